@@ -296,12 +296,12 @@ def test_what_breaks_off_goes_on(host: Host, root: Path) -> None:
 
 
 def test_silent_hosts(host: Host, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(http_client, "SILENCE", 0.2)
-    host.reply = times(2, slow(0.6))
+    monkeypatch.setattr(http_client, "SILENCE", 1.0)
+    host.reply = times(2, slow(3))
     meshhier.open(f"{host.address}/a.3tz").cut(level=0)
     monkeypatch.setattr(http_client, "TRIES", 2)
-    host.reply = slow(0.6)
-    with pytest.raises(meshhier.NetworkError, match="silent for 0.2 s"):
+    host.reply = slow(3)
+    with pytest.raises(meshhier.NetworkError, match="silent for 1 s"):
         meshhier.open(f"{host.address}/a.3tz")
 
 
