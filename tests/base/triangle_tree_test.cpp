@@ -58,6 +58,40 @@ TEST(TriangleTreeTest, EachTriangleIsInOneLeaf) {
   }
 }
 
+TEST(TriangleTreeTest, LeavesOfALineAreItsPiecesInWhateverOrderItComes) {
+  constexpr std::uint32_t kCount = 1024;
+  const auto pieces_of = [](const std::vector<float>& places) {
+    std::vector<SurfaceTriangle> triangles;
+    for (const float x : places)
+      triangles.push_back({Vec3f{x, 0, 0}, Vec3f{x, 0, 0}, Vec3f{x, 0, 0}});
+    return TriangleTree(triangles, 4);
+  };
+  const auto places_by = [](auto&& place_of) {
+    std::vector<float> places;
+    for (std::uint32_t i = 0; i < kCount; ++i)
+      places.push_back(static_cast<float>(place_of(i)) - 300.0F);
+    return places;
+  };
+  for (const std::vector<float>& places :
+       {places_by([](std::uint32_t i) { return i; }),
+        places_by([](std::uint32_t i) { return kCount - 1 - i; }),
+        places_by([](std::uint32_t i) { return i % 2 == 0 ? i / 2 : kCount - 1 - i / 2; }),
+        places_by([](std::uint32_t i) { return i * 5 % kCount; }),
+        places_by([](std::uint32_t i) { return i * 205 % kCount; })}) {
+    const TriangleTree tree = pieces_of(places);
+    for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+      for (const std::uint32_t triangle : tree.triangles(leaf))
+        ASSERT_EQ(static_cast<std::uint32_t>(places[triangle] + 300.0F) / 4, leaf);
+    }
+  }
+  // What lies at one place is told apart by its number.
+  const TriangleTree tree = pieces_of(std::vector<float>(kCount, -0.0F));
+  for (std::uint32_t leaf = 0; leaf < tree.leaf_count(); ++leaf) {
+    for (const std::uint32_t triangle : tree.triangles(leaf))
+      ASSERT_EQ(triangle / 4, leaf);
+  }
+}
+
 TEST(TriangleTreeTest, LooksAtAllThatIsWithinReach) {
   const std::vector<SurfaceTriangle> triangles = scattered(700);
   for (const std::size_t leaf_size : {1, 4}) {
