@@ -99,6 +99,9 @@ std::uint64_t rows_of(const NpyHead& head, RowKind kind) {
 /// Returns the bytes of a number.
 std::size_t size_of_number(const NpyHead& head) {
   const std::string_view type = head.value("descr", ",");
+  if (type.starts_with('['))
+    head.fail(
+        "its rows are records: save numpy.lib.recfunctions.structured_to_unstructured() of it");
   if (type != "'<f4'" && type != "'<f8'") {
     head.fail(
         fmt::format("expected numbers of float64 or float32, found the type {}: save "

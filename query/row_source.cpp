@@ -89,6 +89,8 @@ std::uint64_t read_rows(storage::FileSystem& files, const std::filesystem::path&
     StartOfStream stream(input);
     if (is_ply(stream.start()))
       throw Error(ErrorCode::input, "a PLY cannot be read from standard input: name its file");
+    if (stream.start().starts_with("\x1f\x8b"))
+      throw Error(ErrorCode::input, "standard input is packed by gzip: name its file");
     return read_stream(stream, "standard input", kind, visit);
   }
   const auto file = files.open(path);

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <optional>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -107,13 +106,19 @@ std::size_t end_of_field(std::string_view line, char separator) {
   return line.size();
 }
 
-/// Splits a line at commas, else at semicolons, else at blanks and tabs. Only where the line has
-/// other separators than blanks may a field be empty; one behind the last separator is none.
-void split(std::string_view line, std::vector<std::string_view>& fields) {
+/// Returns what stands between the fields of a line: semicolons, else commas, else blanks and tabs.
+char separator_of(std::string_view line) {
+  for (const char separator : {';', ','}) {
+    if (end_of_field(line, separator) < line.size())
+      return separator;
+  }
+  return ' ';
+}
+
+/// Only where there are other separators than blanks may a field be empty; one behind the last
+/// separator is none.
+void split(std::string_view line, char separator, std::vector<std::string_view>& fields) {
   fields.clear();
-  const char separator = line.find(',') != std::string_view::npos   ? ','
-                         : line.find(';') != std::string_view::npos ? ';'
-                                                                    : ' ';
   while (!line.empty()) {
     std::size_t end = end_of_field(line, separator);
     if (separator == ' ')
@@ -126,14 +131,25 @@ void split(std::string_view line, std::vector<std::string_view>& fields) {
   }
 }
 
+/// Returns the number that a field is; with a decimal comma, too, where commas separate nothing.
+std::optional<double> number_in(std::string_view field, char separator) {
+  const std::size_t comma = field.find(',');
+  if (separator == ',' || comma == std::string_view::npos ||
+      field.find('.') != std::string_view::npos)
+    return mesh_io::parse_real<double>(field);
+  std::string with_point(field);
+  with_point[comma] = '.';
+  return mesh_io::parse_real<double>(with_point);
+}
+
 /// The columns of a table that are meant.
 class Columns {
  public:
   explicit Columns(RowKind kind) : names_(names_of(kind)) {}
 
   /// Takes the names of a first line; returns false if it has numbers.
-  bool take_names(const Lines& lines, std::span<const std::string_view> fields) {
-    if (mesh_io::parse_real<double>(fields.front()))
+  bool take_names(const Lines& lines, std::span<const std::string_view> fields, char separator) {
+    if (number_in(fields.front(), separator))
       return false;
     const auto at = [&](std::string_view name) {
       const auto found = std::ranges::find_if(
@@ -148,7 +164,7 @@ class Columns {
     return true;
   }
 
-  void append(const Lines& lines, std::span<const std::string_view> fields,
+  void append(const Lines& lines, std::span<const std::string_view> fields, char separator,
               std::vector<double>& numbers) const {
     if (places_.empty() && fields.size() != names_.size()) {
       lines.fail(
@@ -159,7 +175,7 @@ class Columns {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const std::size_t place = places_.empty() ? i : places_[i];
       const std::string_view field = place < fields.size() ? fields[place] : "";
-      const auto number = mesh_io::parse_real<double>(field);
+      const auto number = number_in(field, separator);
       if (!number)
         lines.fail(fmt::format("expected a number for {}, found {}", names_[i],
                                field.empty() ? "nothing" : plain_text(field, kShownBytes)));
@@ -181,19 +197,22 @@ std::uint64_t read_text_rows(mesh_io::InputStream& stream, const std::string& na
   std::vector<double> numbers;
   std::vector<std::string_view> fields;
   std::uint64_t rows = 0;
-  bool is_first = true;
+  std::optional<char> separator;  // of the first line, and so of all
   while (auto line = lines.next()) {
-    if (is_first && line->starts_with("\xef\xbb\xbf"))
+    if (!separator && line->starts_with("\xef\xbb\xbf"))
       line->remove_prefix(3);
-    split(line->substr(0, line->find('#')), fields);
-    if (fields.empty())
+    const std::string_view told = line->substr(0, line->find('#'));
+    if (trimmed(told, kBlanks).empty())
       continue;
     if (std::ranges::any_of(*line, [](char c) { return c == '\0'; }))
       lines.fail("this is neither a text, nor a .npy, nor a PLY");
-    const bool is_head = std::exchange(is_first, false) && columns.take_names(lines, fields);
-    if (is_head)
+    const bool is_first = !separator;
+    if (is_first)
+      separator = separator_of(told);
+    split(told, *separator, fields);
+    if (is_first && columns.take_names(lines, fields, *separator))
       continue;
-    columns.append(lines, fields, numbers);
+    columns.append(lines, fields, *separator, numbers);
     ++rows;
     if (numbers.size() >= kLinesAtOnce * columns_of(kind)) {
       visit(numbers);

@@ -73,6 +73,21 @@ TEST_F(RowsTest, OfATableAreTheColumnsThatItsFirstLineNames) {
   EXPECT_THAT(read("dx dy dz x y z\n1 2 3 4 5 6\n", RowKind::rays), ElementsAre(4, 5, 6, 1, 2, 3));
 }
 
+TEST_F(RowsTest, BetweenSemicolonsCommasSeparateNothing) {
+  EXPECT_THAT(read("x;y;z;note\n1;2;3;a,b\n\n4;5;6;\n"), ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_THAT(read("1,5;-2,25;3\n4.5;5e1;,5\n"), ElementsAre(1.5, -2.25, 3, 4.5, 50, 0.5));
+  EXPECT_THAT(read("\"a;b\",x,y,z\n7,1,2,3\n"), ElementsAre(1, 2, 3));
+  EXPECT_THAT(failure("1;2;3;a,b\n"), HasSubstr("line 1: expected 3 numbers, found 4 columns"));
+  EXPECT_THAT(failure("1;2;3\n1,2;3,4,5;6\n"), HasSubstr("a number for y, found 3,4,5"));
+  EXPECT_THAT(failure("1;2;3\n1,000.5;2;3\n"), HasSubstr("a number for x, found 1,000.5"));
+}
+
+TEST_F(RowsTest, BlankLinesAreNoneWhateverSeparates) {
+  for (const char* text :
+       {"1,2,3\r\n\r\n  \r\n\t\r\n# what\r\n4,5,6\r\n", "1;2;3\r\r \r4;5;6", "1 2 3\n\n \n4 5 6"})
+    EXPECT_THAT(read(text), ElementsAre(1, 2, 3, 4, 5, 6)) << text;
+}
+
 TEST_F(RowsTest, OfATextMayBeManyAndInGzip) {
   std::string text;
   for (int i = 0; i < 60000; ++i)
@@ -135,6 +150,9 @@ TEST_F(RowsTest, WhatIsWrongWithAnArrayIsTold) {
   EXPECT_THAT(failure(npy("<f8", "(6,)", six)), HasSubstr("found (6,)"));
   EXPECT_THAT(failure(npy("<f8", "(2, 3)", six), RowKind::rays), HasSubstr("n x 6"));
   EXPECT_THAT(failure(npy("<i8", "(2, 3)", six)), HasSubstr("found the type '<i8'"));
+  std::string records = npy("<f8,<f8", "(3,)", six);
+  records.replace(records.find("'<f8,<f8'"), 9, "[('x','f8')]");
+  EXPECT_THAT(failure(records), HasSubstr("its rows are records: save numpy"));
   EXPECT_THAT(failure(npy("<f8", "(2, 3)", six, "True")), HasSubstr("Fortran order"));
   EXPECT_THAT(failure(npy("<f8", "(3, 3)", six)), HasSubstr("it ends in row 2 of 3"));
   EXPECT_THAT(failure(npy("<f8", "(1, 3)", six)), HasSubstr("more behind its 1 rows"));
