@@ -68,6 +68,8 @@ void form(std::span<const std::byte> input);
 void image(std::span<const std::byte> input);
 /// A raster of heights: its kind, then the file.
 void raster(std::span<const std::byte> input);
+/// Points or rays for a query: a byte, then the file.
+void rows(std::span<const std::byte> input);
 /// A small mesh of any shape and how it is to be built.
 void build(std::span<const std::byte> input);
 
@@ -105,6 +107,7 @@ inline constexpr auto kTargets = std::to_array<Target>({{"ply_header", ply_heade
                                                         {"form", form},
                                                         {"image", image},
                                                         {"raster", raster},
+                                                        {"rows", rows},
                                                         {"build", build}});
 
 }  // namespace meshhier::tests::fuzz
