@@ -233,17 +233,16 @@ class Comparer {
       middles.push_back((t.corners[0] + t.corners[1] + t.corners[2]) * (1.0 / 3));
     const std::vector<std::uint32_t> order = curve_order(middles);
     const std::vector<Vec3d> sorted = in_order(middles, order);
-    const std::vector<NearestOnSurface> nearest = search_.nearest(sorted, cancel_);
-    std::vector<TriangleOfTile> named;
-    for (const NearestOnSurface& one : nearest)
-      named.push_back({one.tile, one.triangle});
-    const auto targets = shown_triangles(search_.trees(), target_.size(), named, cancel_);
+    std::vector<SurfaceTriangle> targets(sorted.size());
+    const std::vector<NearestOnSurface> nearest = search_.nearest(
+        sorted, cancel_, Ties::any,
+        [&](std::size_t i, const ShownTriangle& triangle) { targets[i] = triangle.corners; });
     std::vector<double> most(loose.size());
     execution::parallel_for(block_count(loose.size()), [&](std::size_t block) {
       const std::size_t first = block * kSearchedPoints;
       for (std::size_t i = first; i < std::min(first + kSearchedPoints, most.size()); ++i) {
         for (const Vec3d corner : loose[order[i]].corners)
-          most[i] = std::max(most[i], squared_distance(corner, targets[i].corners));
+          most[i] = std::max(most[i], squared_distance(corner, targets[i]));
       }
     });
     for (std::size_t i = 0; i < loose.size(); ++i) {

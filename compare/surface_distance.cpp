@@ -35,13 +35,16 @@ class NearestSoFar {
   using Answer = NearestOnSurface;
 
   NearestSoFar(const CutSurface& surface, std::span<const Vec3d> points, Ties ties,
-               double squared_size)
+               double squared_size, const TakeShown& take)
       : found(points.size()),
         surface_(surface),
         points_(points),
         ties_(ties),
-        squared_size_(squared_size) {}
+        squared_size_(squared_size),
+        take_(take) {}
 
+  /// Equal distances are told apart by the order of tiles, or else not at all.
+  bool any_order() const { return ties_ == Ties::first; }
   /// Returns whether a box that is so far from a point may hold what is nearer, or comes before
   /// what is as near.
   bool is_open(std::size_t point, double squared) const {
@@ -64,7 +67,7 @@ class NearestSoFar {
       hint = first.triangle;
     return {first.squared, query.tile, first.triangle};
   }
-  void take(const TileQuery& query, const NearestOnSurface& answer) {
+  void take(const TileTree& tree, const TileQuery& query, const NearestOnSurface& answer) {
     NearestOnSurface& now = found[query.point];
     const auto rank = [](const NearestOnSurface& one) {
       return std::tuple(one.squared, one.tile, one.triangle);
@@ -72,8 +75,11 @@ class NearestSoFar {
     const bool is_better = ties_ == Ties::any
                                ? answer.squared < now.squared
                                : answer.triangle != TriangleTree::kNone && rank(answer) < rank(now);
-    if (is_better)
-      now = answer;
+    if (!is_better)
+      return;
+    now = answer;
+    if (take_)
+      take_(query.point, tree.shown(answer.tile, answer.triangle));
   }
 
   std::vector<NearestOnSurface> found;
@@ -83,6 +89,7 @@ class NearestSoFar {
   std::span<const Vec3d> points_;
   Ties ties_;
   double squared_size_;
+  const TakeShown& take_;
 };
 
 }  // namespace
@@ -141,8 +148,8 @@ std::uint32_t SurfaceDistance::likely_tile(Vec3d point,
 /// boxes are nearer than what was found there.
 std::vector<NearestOnSurface> SurfaceDistance::nearest(std::span<const Vec3d> points,
                                                        const execution::CancelToken& cancel,
-                                                       Ties ties) {
-  NearestSoFar so_far(surface_, points, ties, squared_size_);
+                                                       Ties ties, const TakeShown& take) {
+  NearestSoFar so_far(surface_, points, ties, squared_size_, take);
   if (surface_.total().triangles == 0)
     return std::move(so_far.found);
   std::vector<TileQuery> first(points.size());
@@ -153,7 +160,7 @@ std::vector<NearestOnSurface> SurfaceDistance::nearest(std::span<const Vec3d> po
       query.tile = likely_tile(points[query.point], near);
     }
   });
-  answer_queries(trees_, by_tile(first, surface_.size()), so_far, cancel);
+  answer_queries(trees_, first, so_far, cancel);
 
   const auto others = [&](std::size_t block) {
     const std::vector<Candidate> near = candidates(block_of(points, block));
@@ -171,7 +178,7 @@ std::vector<NearestOnSurface> SurfaceDistance::nearest(std::span<const Vec3d> po
     }
     return more;
   };
-  answer_collected(trees_, surface_.size(), points.size(), others, so_far, cancel);
+  answer_collected(trees_, points.size(), others, so_far, cancel);
   return std::move(so_far.found);
 }
 

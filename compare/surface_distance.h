@@ -83,10 +83,11 @@ class SurfaceDistance {
                                 const execution::CancelToken& cancel);
   /// Returns the nearest triangle of each point, likewise. What is nearest is decided by
   /// squared_distance(), with its rounding: the answer of Ties::first is that of trying all
-  /// triangles of the surface.
+  /// triangles of the surface. `take`: if it is there, its last call for a point tells the
+  /// triangle.
   std::vector<NearestOnSurface> nearest(std::span<const Vec3d> points,
-                                        const execution::CancelToken& cancel,
-                                        Ties ties = Ties::any);
+                                        const execution::CancelToken& cancel, Ties ties = Ties::any,
+                                        const TakeShown& take = {});
 
   TreeCache& trees() { return trees_; }
   /// Returns how many different tiles were read.

@@ -40,9 +40,10 @@ class HitsSoFar {
  public:
   using Answer = HitOnSurface;
 
-  HitsSoFar(const CutSurface& surface, std::span<const Ray> rays)
-      : found(rays.size()), surface_(surface), rays_(rays) {}
+  HitsSoFar(const CutSurface& surface, std::span<const Ray> rays, const TakeShown& take)
+      : found(rays.size()), surface_(surface), rays_(rays), take_(take) {}
 
+  static bool any_order() { return true; }
   bool is_open(const TileQuery& query) const {
     const double entry = entry_of(rays_[query.point], surface_.facts(query.tile).bounds);
     return entry < kBehindAll && entry <= found[query.point].distance;
@@ -51,13 +52,15 @@ class HitsSoFar {
     const HitTriangle hit = tree.search.first_hit(rays_[query.point], found[query.point].distance);
     return {hit.distance, query.tile, hit.triangle};
   }
-  void take(const TileQuery& query, const HitOnSurface& answer) {
+  void take(const TileTree& tree, const TileQuery& query, const HitOnSurface& answer) {
     HitOnSurface& now = found[query.point];
     const auto rank = [](const HitOnSurface& hit) {
       return std::tuple(hit.distance, hit.tile, hit.triangle);
     };
-    if (answer.is_there() && rank(answer) < rank(now))
-      now = answer;
+    if (!answer.is_there() || rank(now) <= rank(answer))
+      return;
+    now = answer;
+    take_(query.point, tree.shown(answer.tile, answer.triangle));
   }
 
   std::vector<HitOnSurface> found;
@@ -65,6 +68,7 @@ class HitsSoFar {
  private:
   const CutSurface& surface_;
   std::span<const Ray> rays_;
+  const TakeShown& take_;
 };
 
 }  // namespace
@@ -97,11 +101,11 @@ std::vector<TileQuery> SurfaceRays::first_tiles(std::span<const Ray> rays) const
   return first;
 }
 
-std::vector<HitOnSurface> SurfaceRays::first_hits(std::span<const Ray> rays,
+std::vector<HitOnSurface> SurfaceRays::first_hits(std::span<const Ray> rays, const TakeShown& take,
                                                   const execution::CancelToken& cancel) {
-  HitsSoFar so_far(surface_, rays);
+  HitsSoFar so_far(surface_, rays, take);
   const std::vector<TileQuery> first = first_tiles(rays);
-  answer_queries(trees_, by_tile(first, surface_.size()), so_far, cancel);
+  answer_queries(trees_, first, so_far, cancel);
   const auto others = [&](std::size_t block) {
     std::vector<TileQuery> more;
     for (const TileQuery& asked : block_of(std::span(first), block)) {
@@ -114,7 +118,7 @@ std::vector<HitOnSurface> SurfaceRays::first_hits(std::span<const Ray> rays,
     }
     return more;
   };
-  answer_collected(trees_, surface_.size(), first.size(), others, so_far, cancel);
+  answer_collected(trees_, first.size(), others, so_far, cancel);
   return std::move(so_far.found);
 }
 

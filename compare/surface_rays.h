@@ -11,7 +11,7 @@
 // Invariant. The answer is that of trying all triangles, to the bit (base/ray.h).
 //
 // Cost. O(log n) a ray and tile. A tile is read twice a call, or more often if most rays enter very
-// many.
+// many; fewer times if the cache holds it.
 #pragma once
 
 #include "base/ray.h"
@@ -43,9 +43,10 @@ class SurfaceRays {
 
   /// Returns what each ray hits first, by Ray::hit(); of what is hit at one distance, what the
   /// first tile in the cut has, and of that the first triangle. Rays are relative to the origin.
-  /// Those that follow each other should be near each other, for speed only. The result depends on
-  /// rays and surface alone, to the bit. Throws as SurfaceDistance.
-  std::vector<HitOnSurface> first_hits(std::span<const Ray> rays,
+  /// Those that follow each other should be near each other, for speed only. The result, and the
+  /// last call of `take` for a ray that hits, depend on rays and surface alone, to the bit. Throws
+  /// as SurfaceDistance.
+  std::vector<HitOnSurface> first_hits(std::span<const Ray> rays, const TakeShown& take,
                                        const execution::CancelToken& cancel);
 
  private:

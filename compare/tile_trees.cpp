@@ -13,6 +13,13 @@ std::uint64_t TileTree::memory_bytes() const {
          (facts.border.size() + facts.objects.size()) * sizeof(std::uint32_t);
 }
 
+ShownTriangle TileTree::shown(std::uint32_t tile, std::uint32_t triangle) const {
+  ShownTriangle shown{search[triangle], tile, facts.number_in_tile(triangle), {}};
+  if (!facts.objects.empty())
+    shown.object = facts.objects[triangle];
+  return shown;
+}
+
 std::vector<std::shared_ptr<const TileTree>> TreeCache::get(
     std::span<const std::uint32_t> positions) {
   std::vector<std::shared_ptr<const TileTree>> trees(positions.size());
@@ -46,14 +53,17 @@ void TreeCache::insert(std::uint32_t position, std::shared_ptr<const TileTree> t
   }
 }
 
-std::vector<TileQuery> by_tile(std::span<const TileQuery> queries, std::size_t tiles) {
+std::vector<TileQuery> by_tile(std::span<const TileQuery> queries, std::size_t tiles, Sweep sweep) {
+  const auto turn = [&](const TileQuery& query) {
+    return sweep == Sweep::up ? query.tile : tiles - 1 - query.tile;
+  };
   std::vector<std::size_t> ends(tiles + 1);
   for (const TileQuery& query : queries)
-    ++ends[query.tile + 1];
+    ++ends[turn(query) + 1];
   std::partial_sum(ends.begin(), ends.end(), ends.begin());
   std::vector<TileQuery> sorted(queries.size());
   for (const TileQuery& query : queries)
-    sorted[ends[query.tile]++] = query;
+    sorted[ends[turn(query)]++] = query;
   return sorted;
 }
 
@@ -63,27 +73,6 @@ BatchTrees::BatchTrees(TreeCache& trees, std::span<const TileQuery> batch) {
       tiles_.push_back(query.tile);
   }
   held_ = trees.get(tiles_);
-}
-
-std::vector<ShownTriangle> shown_triangles(TreeCache& trees, std::size_t tiles,
-                                           std::span<const TriangleOfTile> triangles,
-                                           const execution::CancelToken& cancel) {
-  std::vector<TileQuery> queries;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (triangles[i].triangle != TriangleTree::kNone)
-      queries.push_back({triangles[i].tile, static_cast<std::uint32_t>(i)});
-  }
-  std::vector<ShownTriangle> shown(triangles.size());
-  look_up(trees, by_tile(queries, tiles), cancel,
-          [&](const TileTree& tree, std::size_t, const TileQuery& query) {
-            const std::uint32_t triangle = triangles[query.point].triangle;
-            ShownTriangle& result = shown[query.point];
-            result.corners = tree.search[triangle];
-            result.number_in_tile = tree.facts.number_in_tile(triangle);
-            if (!tree.facts.objects.empty())
-              result.object = tree.facts.objects[triangle];
-          });
-  return shown;
 }
 
 }  // namespace meshhier::comparing

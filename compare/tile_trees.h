@@ -10,6 +10,9 @@
 //      questions     (tile 3, a) (tile 7, a) (tile 7, b) (tile 9, a) ...
 //                    |------- batch: trees of 8 tiles --------|
 //
+// Tiles whose trees are held from the questions before come first, if the answers do not depend on
+// the order of tiles: over many tiles one goes up and down.
+//
 // Invariant. Batches have fixed sizes (kSearchedPoints, kSearchedTiles): results do not depend on
 // threads or on the cache, to the bit.
 #pragma once
@@ -22,6 +25,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <map>
 #include <memory>
@@ -49,14 +53,30 @@ std::span<Element> block_of(std::span<Element> all, std::size_t block) {
   return all.subspan(first, std::min(kSearchedPoints, all.size() - first));
 }
 
+/// Facts about a triangle of a surface.
+struct ShownTriangle {
+  SurfaceTriangle corners{};
+  std::uint32_t tile = 0;                 ///< position in the cut
+  std::uint32_t number_in_tile = 0;       ///< TriangleFacts::number_in_tile()
+  std::optional<std::uint32_t> object{};  ///< if the mesh has any
+};
+
+/// Takes what is found for a point or ray: it may be called again with what is better.
+using TakeShown = std::function<void(std::size_t number, const ShownTriangle& triangle)>;
+
 /// The triangles that a tile draws, in a tree, with what else TileSurface tells of them.
 struct TileTree {
   explicit TileTree(TileSurface surface);
   std::uint64_t memory_bytes() const;
+  /// `tile`: the position in the cut. `triangle`: the index in TileSurface::triangles.
+  ShownTriangle shown(std::uint32_t tile, std::uint32_t triangle) const;
 
   TriangleSearch search;
   TriangleFacts facts;
 };
+
+/// The order in which tiles are asked: from the first of the cut to the last, or back.
+enum class Sweep { up, down };
 
 /// Keeps trees of a surface's tiles; the least recently used go first. For one thread.
 class TreeCache {
@@ -68,6 +88,14 @@ class TreeCache {
   /// Returns the trees of some tiles, built in parallel as far as they are not there. Requires
   /// positions without repeats. Throws as CutSurface::load().
   std::vector<std::shared_ptr<const TileTree>> get(std::span<const std::uint32_t> positions);
+  /// Returns how many tiles the surface has.
+  std::size_t tiles() const { return was_read_.size(); }
+  /// Returns the order that begins with the trees that are held, if the last ones were asked in an
+  /// order.
+  Sweep next_sweep() const {
+    return entries_.empty() || entries_.front().position <= entries_.back().position ? Sweep::up
+                                                                                     : Sweep::down;
+  }
   /// Returns how many different tiles were asked for.
   std::uint64_t tiles_read() const {
     return static_cast<std::uint64_t>(std::ranges::count(was_read_, true));
@@ -96,7 +124,8 @@ struct TileQuery {
 };
 
 /// Returns queries in the order of their tiles; those of a tile as they come. O(n + tiles).
-std::vector<TileQuery> by_tile(std::span<const TileQuery> queries, std::size_t tiles);
+std::vector<TileQuery> by_tile(std::span<const TileQuery> queries, std::size_t tiles,
+                               Sweep sweep = Sweep::up);
 
 /// Takes the queries of the next kSearchedTiles tiles away from the front of `queries`, which are
 /// sorted by tile. Returns those that are open.
@@ -119,7 +148,7 @@ class BatchTrees {
  public:
   BatchTrees(TreeCache& trees, std::span<const TileQuery> batch);
   const TileTree& operator[](const TileQuery& query) const {
-    const auto tile = std::ranges::lower_bound(tiles_, query.tile) - tiles_.begin();
+    const auto tile = std::ranges::find(tiles_, query.tile) - tiles_.begin();
     return *held_[static_cast<std::size_t>(tile)];
   }
 
@@ -128,18 +157,22 @@ class BatchTrees {
   std::vector<std::shared_ptr<const TileTree>> held_;
 };
 
-/// Answers queries that are sorted by tile. A Rule has:
+/// Answers queries. A Rule has:
 ///
+///     bool any_order() const         whether tiles may be asked in any order, for the same answers
 ///     bool is_open(query) const      whether the tile may answer better than what is found so far
 ///     Answer ask(tree, query, hint) const
 ///                                    `hint`: of the query before, if it asked the same tile; else
 ///                                    0
-///     void take(query, answer)       in the order of the queries
+///     void take(tree, query, answer) tile by tile, in the order of the queries
 ///
 /// ask() runs in parallel, the others do not. Throws Error(io | corrupt | interrupted).
 template <class Rule>
-void answer_queries(TreeCache& trees, std::span<const TileQuery> queries, Rule& rule,
+void answer_queries(TreeCache& trees, std::span<const TileQuery> unsorted, Rule& rule,
                     const execution::CancelToken& cancel) {
+  const std::vector<TileQuery> sorted =
+      by_tile(unsorted, trees.tiles(), rule.any_order() ? trees.next_sweep() : Sweep::up);
+  std::span<const TileQuery> queries(sorted);
   const auto is_open = [&](const TileQuery& query) { return rule.is_open(query); };
   while (!queries.empty()) {
     cancel.check();
@@ -158,21 +191,21 @@ void answer_queries(TreeCache& trees, std::span<const TileQuery> queries, Rule& 
       }
     });
     for (std::size_t i = 0; i < batch.size(); ++i)
-      rule.take(batch[i], answers[i]);
+      rule.take(held[batch[i]], batch[i], answers[i]);
   }
 }
 
 /// Gathers queries, collect(block) for each block of kSearchedPoints of `count` items, in parallel,
 /// and answers them, in the order of the blocks; at once if they are few, or else in parts that
-/// memory holds. `tiles`: how many the surface has. Throws as answer_queries().
+/// memory holds. Throws as answer_queries().
 template <class Collect, class Rule>
-void answer_collected(TreeCache& trees, std::size_t tiles, std::size_t count,
-                      const Collect& collect, Rule& rule, const execution::CancelToken& cancel) {
+void answer_collected(TreeCache& trees, std::size_t count, const Collect& collect, Rule& rule,
+                      const execution::CancelToken& cancel) {
   constexpr std::size_t kBlocksAtOnce = 32;
   constexpr std::size_t kManyQueries = std::size_t{1} << 20;  // 8 MiB, and as many sorted
   std::vector<TileQuery> queries;
   const auto answer = [&] {
-    answer_queries(trees, by_tile(queries, tiles), rule, cancel);
+    answer_queries(trees, queries, rule, cancel);
     queries.clear();
   };
   std::vector<std::vector<TileQuery>> parts(kBlocksAtOnce);
@@ -207,24 +240,5 @@ void look_up(TreeCache& trees, std::span<const TileQuery> queries,
     before += batch.size();
   }
 }
-
-/// A triangle of a surface.
-struct TriangleOfTile {
-  std::uint32_t tile = 0;                        ///< position in the cut
-  std::uint32_t triangle = TriangleTree::kNone;  ///< index in TileSurface::triangles; kNone: no one
-};
-
-/// Facts about a triangle of a surface.
-struct ShownTriangle {
-  SurfaceTriangle corners{};
-  std::uint32_t number_in_tile = 0;       ///< TriangleFacts::number_in_tile()
-  std::optional<std::uint32_t> object{};  ///< if the mesh has any
-};
-
-/// Returns what is told of triangles, in their order; nothing of no one. `tiles`: how many the
-/// surface has. Throws Error(io | corrupt | interrupted).
-std::vector<ShownTriangle> shown_triangles(TreeCache& trees, std::size_t tiles,
-                                           std::span<const TriangleOfTile> triangles,
-                                           const execution::CancelToken& cancel);
 
 }  // namespace meshhier::comparing

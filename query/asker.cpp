@@ -19,7 +19,6 @@ namespace {
 using comparing::CutSurface;
 using comparing::ShownTriangle;
 using comparing::Side;
-using comparing::TriangleOfTile;
 
 Vec3d vector_at(std::span<const double> numbers, std::size_t first) {
   return {numbers[first], numbers[first + 1], numbers[first + 2]};
@@ -33,9 +32,8 @@ bool is_place(Vec3d place) {
          is_finite(place);
 }
 
-void put_triangle(const CutSurface& surface, std::uint32_t tile, const ShownTriangle& triangle,
-                  Answer& answer) {
-  const NodeId node = surface.cut()[tile];
+void put_triangle(const CutSurface& surface, const ShownTriangle& triangle, Answer& answer) {
+  const NodeId node = surface.cut()[triangle.tile];
   answer.level = raw(node.level);
   answer.index = node.index;
   answer.triangle = triangle.number_in_tile;
@@ -56,21 +54,19 @@ class PointAsker final : public Asker {
   void ask(std::span<const double> rows, std::span<Answer> answers,
            const execution::CancelToken& cancel) override {
     std::vector<Vec3d> points;
+    points.reserve(answers.size());
     for (std::size_t i = 0; i < answers.size(); ++i)
       points.push_back(vector_at(rows, 3 * i) - options_.origin);
-    const auto nearest = search_.nearest(points, cancel, comparing::Ties::first);
-    std::vector<TriangleOfTile> named;
-    for (const comparing::NearestOnSurface& one : nearest)
-      named.push_back({one.tile, one.triangle});
-    const auto triangles = shown_triangles(search_.trees(), surface_.size(), named, cancel);
-    for (std::size_t i = 0; i < answers.size(); ++i) {
-      const auto& [a, b, c] = triangles[i].corners;
+    const auto take = [&](std::size_t i, const ShownTriangle& triangle) {
+      const auto& [a, b, c] = triangle.corners;
       const auto [first, second, third] = widest_first(a, b, c);
       const ClosestPoint closest = closest_point(points[i], TriangleFrame(first, second, third));
-      answers[i].distance = std::sqrt(nearest[i].squared);
       answers[i].place = closest.point + options_.origin;
-      put_triangle(surface_, nearest[i].tile, triangles[i], answers[i]);
-    }
+      put_triangle(surface_, triangle, answers[i]);
+    };
+    const auto nearest = search_.nearest(points, cancel, comparing::Ties::first, take);
+    for (std::size_t i = 0; i < answers.size(); ++i)
+      answers[i].distance = std::sqrt(nearest[i].squared);
     if (options_.has_sides)
       put_sides(surface_sides(surface_, search_.trees(), points, nearest, cancel), answers);
   }
@@ -112,21 +108,20 @@ class RayAsker final : public Asker {
   void ask(std::span<const double> rows, std::span<Answer> answers,
            const execution::CancelToken& cancel) override {
     std::vector<Ray> rays;
+    rays.reserve(answers.size());
     for (std::size_t i = 0; i < answers.size(); ++i)
       rays.push_back(ray_of(rows.subspan(6 * i, 6)));
-    const auto hits = rays_.first_hits(rays, cancel);
-    std::vector<TriangleOfTile> named;
-    for (const comparing::HitOnSurface& hit : hits)
-      named.push_back({hit.tile, hit.is_there() ? hit.triangle : TriangleTree::kNone});
-    const auto triangles = shown_triangles(trees_, surface_.size(), named, cancel);
+    const auto take = [&](std::size_t i, const ShownTriangle& triangle) {
+      answers[i].normal = normal_of(triangle.corners);
+      put_triangle(surface_, triangle, answers[i]);
+    };
+    const auto hits = rays_.first_hits(rays, take, cancel);
     for (std::size_t i = 0; i < answers.size(); ++i) {
       answers[i].distance = std::numeric_limits<double>::infinity();
       if (!hits[i].is_there())
         continue;
       answers[i].distance = hits[i].distance;
       answers[i].place = rays[i].at(hits[i].distance) + options_.origin;
-      answers[i].normal = normal_of(triangles[i].corners);
-      put_triangle(surface_, hits[i].tile, triangles[i], answers[i]);
     }
   }
 

@@ -35,8 +35,8 @@ constexpr std::uint64_t kFixedBytes = std::uint64_t{88} << 20;
 constexpr std::uint64_t kLeastBatch = 65536;
 /// Rows that are looked up together at most: their places in a batch have 32 bits.
 constexpr std::uint64_t kMostBatch = std::uint64_t{1} << 31;
-/// A row at work takes about a quarter of this; with its answer, and the tiles that it asks.
-constexpr std::uint64_t kSpareBytesPerRow = 1024;
+/// A row at work takes less than half of this, with its answer, and the tiles that it asks.
+constexpr std::uint64_t kSpareBytesPerRow = 768;
 /// Names of objects that are kept: neighbours in a file often have the same.
 constexpr std::size_t kKeptNames = 16384;
 

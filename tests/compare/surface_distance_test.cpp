@@ -567,7 +567,13 @@ TEST_F(SurfaceTest, TheFirstHitOfARayIsThatOfTryingAll) {
       for (const Vec3f corner : mesh.positions)
         rays.push_back({to_double(corner) + Vec3d{0, 0, 3}, {0, 0, -1}});
       TreeCache trees(surface, seed == 0 ? 0 : 1 << 22);
-      const auto found = SurfaceRays(surface, trees).first_hits(rays, execution::CancelToken());
+      std::vector<ShownTriangle> shown(rays.size());
+      const auto found =
+          SurfaceRays(surface, trees)
+              .first_hits(
+                  rays,
+                  [&](std::size_t ray, const ShownTriangle& triangle) { shown[ray] = triangle; },
+                  execution::CancelToken());
       std::size_t hits = 0;
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const HitOnSurface expected = first_hit_of_all(surface, rays[i]);
@@ -575,6 +581,10 @@ TEST_F(SurfaceTest, TheFirstHitOfARayIsThatOfTryingAll) {
         ASSERT_EQ(std::pair(found[i].tile, found[i].triangle),
                   std::pair(expected.tile, expected.triangle));
         hits += expected.is_there() ? 1 : 0;
+        if (expected.is_there()) {
+          ASSERT_EQ(shown[i].tile, expected.tile);
+          ASSERT_EQ(shown[i].corners, surface.load(expected.tile).triangles[expected.triangle]);
+        }
       }
       EXPECT_GT(hits, 20U);
     }
@@ -587,18 +597,16 @@ TEST_F(SurfaceTest, TrianglesAreNamedByTheirNumbersInTheTile) {
   TreeCache trees(surface, 1 << 20);
   for (std::uint32_t tile = 0; tile < surface.size(); ++tile) {
     const TileMesh& mesh = sample_->tile(surface.cut()[tile]).mesh;
-    std::vector<TriangleOfTile> named(surface.load(tile).triangles.size() + 1);
-    for (std::uint32_t i = 0; i + 1 < named.size(); ++i)
-      named[i] = {tile, i};
-    const auto shown = shown_triangles(trees, surface.size(), named, execution::CancelToken());
-    for (std::size_t i = 0; i + 1 < named.size(); ++i) {
-      const std::size_t number = shown[i].number_in_tile;
+    const auto tree = trees.get(std::array{tile}).front();
+    for (std::uint32_t i = 0; i < tree->search.size(); ++i) {
+      const ShownTriangle shown = tree->shown(tile, i);
+      const std::size_t number = shown.number_in_tile;
       ASSERT_LT(number, mesh.interior.size() + mesh.border.size());
       const TileTriangle& triangle = number < mesh.interior.size()
                                          ? mesh.interior[number]
                                          : mesh.border[number - mesh.interior.size()];
       for (std::size_t corner = 0; corner < 3; ++corner)
-        EXPECT_EQ(shown[i].corners[corner], mesh.vertices.positions[raw(triangle[corner])]);
+        EXPECT_EQ(shown.corners[corner], mesh.vertices.positions[raw(triangle[corner])]);
     }
   }
 }
