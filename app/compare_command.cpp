@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -101,6 +102,8 @@ int run_compare(CompareArguments arguments, execution::ProgressMode mode,
     options.transform = read_transform(environment.files, arguments.transform);
   options.inputs.emplace_back(arguments.transform);
   require_no_terminal(environment, arguments.output);
+  std::ranges::copy_if(std::vector{arguments.from, arguments.to},
+                       std::back_inserter(arguments.web.addresses), storage::is_web_address);
   const auto open = [&](const std::string& name) {
     return std::make_unique<ComparedHierarchy>(environment, name, arguments.web,
                                                options.memory_budget, *progress);
@@ -130,7 +133,8 @@ constexpr const char* kCompareFooter =
 between two scans, how well a model fits its scan. Nothing is thinned out, and neither must fit into
 memory. Percentiles and means are by area. Nothing aligns the two but --transform, which is made in
 a program for that. Exit code 1 if a vertex is farther than the tolerance. Of a mesh a hierarchy is
-built in TMPDIR, for as long as it takes.
+built in TMPDIR, for as long as it takes. Of two addresses --header is for the host of the first,
+unless a line begins with another one's.
 
 The PLY has the property "distance", by which CloudCompare, MeshLab or ParaView colour it. A NAME.hier
 or NAME.3tz is a hierarchy with the attribute "distance", for the page and preview --attribute.
@@ -142,6 +146,7 @@ Examples:
   meshhier compare monday.hier sunday.hier -o moved.ply
   meshhier compare monday.hier sunday.hier -o moved.hier
   meshhier compare monday.3tz https://example.org/sunday.3tz --level 3
+  meshhier compare https://a.org/m.3tz https://b.org/s.3tz --header "https://b.org X-Key: 123"
   meshhier compare a.hier b.hier --transform a_to_b.txt --unsigned
 )";
 

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cctype>
 #include <random>
+#include <ranges>
 #include <sstream>
 #include <string_view>
 
@@ -36,6 +37,33 @@ void require_header(const std::string& line) {
     throw Error(ErrorCode::usage, "--header: expected \"NAME: VALUE\", or @FILE with such lines");
 }
 
+/// A header, and the address whose host it is for; none: that of the first one that is given.
+struct Header {
+  std::string address, line;
+};
+
+/// Parses "NAME: VALUE" or "https://HOST NAME: VALUE".
+Header parse_header(const std::string& text) {
+  const std::size_t end = storage::is_web_address(text) ? text.find(' ') : 0;
+  const std::size_t begin = text.find_first_not_of(' ', end);
+  Header header{text.substr(0, end), begin == std::string::npos ? "" : text.substr(begin)};
+  require_header(header.line);
+  return header;
+}
+
+/// Whether the header is for the host of `address`, which is one of `all`.
+bool is_header_for(const Header& header, const std::string& address,
+                   const std::vector<std::string>& all) {
+  const auto is_its_host = [&](const std::string& other) {
+    return storage::is_same_host(header.address, other);
+  };
+  if (header.address.empty())
+    return storage::is_same_host(all.front(), address);
+  if (std::ranges::none_of(all, is_its_host))
+    throw Error(ErrorCode::usage, "--header: a line is for a host that no address here names");
+  return is_its_host(address);
+}
+
 std::vector<std::string> lines_of(storage::FileSystem& files, const std::string& file) {
   const auto bytes = storage::read_file(files, file, kMostHeaderBytes);
   std::istringstream text(
@@ -50,15 +78,19 @@ std::vector<std::string> lines_of(storage::FileSystem& files, const std::string&
   return lines;
 }
 
-storage::HttpOptions http_options(storage::FileSystem& files, const WebOptions& web) {
+storage::HttpOptions http_options(storage::FileSystem& files, const WebOptions& web,
+                                  const std::string& address) {
   storage::HttpOptions options{{}, web.bytes_per_second};
+  const std::vector<std::string> all = web.addresses.empty() ? std::vector{address} : web.addresses;
   for (const std::string& header : web.headers) {
     const std::vector<std::string> lines = header.starts_with('@')
                                                ? lines_of(files, header.substr(1))
                                                : std::vector<std::string>{header};
-    options.headers.insert(options.headers.end(), lines.begin(), lines.end());
+    for (const Header& parsed : lines | std::views::transform(parse_header)) {
+      if (is_header_for(parsed, address, all))
+        options.headers.push_back(parsed.line);
+    }
   }
-  std::ranges::for_each(options.headers, require_header);
   return options;
 }
 
@@ -73,7 +105,7 @@ void add_web_options(CLI::App& command, WebOptions& web) {
   command
       .add_option("--header", web.headers,
                   "Of an address: a line of the requests (\"Authorization: Bearer ...\"), or @FILE "
-                  "with such lines; ~/.netrc counts, too")
+                  "with such lines; its host alone gets it; ~/.netrc counts, too")
       ->type_name("LINE|@FILE")
       ->allow_extra_args(false);
   add_size_option(command, "--limit-rate", "Of an address: fetch no more bytes a second",
@@ -92,7 +124,7 @@ HierarchyPlace::HierarchyPlace(Environment& environment, const std::string& hier
   if (!storage::is_web_address(hierarchy))
     return;
   remote_ = std::make_unique<storage::RemoteFiles>(
-      files_, hierarchy, temporary_path(".meshhier-fetched-"), http_options(files_, web),
+      files_, hierarchy, temporary_path(".meshhier-fetched-"), http_options(files_, web, hierarchy),
       [&cancel = environment.cancel] { cancel.check(); });
   path_ = remote_->root();
 }

@@ -16,8 +16,11 @@
 namespace meshhier::app {
 
 struct WebOptions {
-  std::vector<std::string> headers;  ///< "NAME: VALUE", or "@FILE" with a line each
+  /// "NAME: VALUE", "https://HOST NAME: VALUE", or "@FILE" with such a line each. Each goes to one
+  /// host: the one that it names, else that of the first address.
+  std::vector<std::string> headers;
   std::uint64_t bytes_per_second = 0;
+  std::vector<std::string> addresses{};  ///< all that a command reads; empty: only the hierarchy
 };
 
 /// Returns a path for a temporary file or folder, in TMPDIR, else /tmp. Only names depend on
@@ -34,8 +37,8 @@ void add_hierarchy_options(
 /// A hierarchy's path and the file system to read it with.
 class HierarchyPlace {
  public:
-  /// All must outlive it. Throws Error(usage) for a header that is none, Error(io) for a file of
-  /// headers that cannot be read.
+  /// All must outlive it. Throws Error(usage) for a header that is none, or is for no host that is
+  /// asked, Error(io) for a file of headers that cannot be read.
   HierarchyPlace(Environment& environment, const std::string& hierarchy, const WebOptions& web);
 
   storage::FileSystem& files() const { return remote_ ? *remote_ : files_; }

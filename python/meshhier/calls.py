@@ -6,13 +6,12 @@ from __future__ import annotations
 import os
 import pathlib
 from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Union, overload
-from urllib.parse import urlsplit
 
-from .asked import Path, is_web_address, output_path
+from .asked import Path, output_path
 from .errors import UsageError
 from .hierarchy import Hierarchy, Place
-from .http_client import Headers
-from .options import Files, option_words, path_word
+from .http_client import Headers, without_secrets
+from .options import Files, header_lines, option_words, path_word
 from .process import Listeners, Result, run_program
 
 MadeFile = Union[pathlib.Path, bytes]
@@ -50,13 +49,10 @@ def output_words(output: Optional[Path]) -> list[str]:
     return [] if output is None else [f"--output={path_word(output_path(output))}"]
 
 
-def _known_headers(places: Sequence[Place]) -> Optional[Headers]:
-    """Those of open hierarchies. Raises UsageError where they would go to another host, too: the program sends them to each."""
-    web = [place._place[:2] if isinstance(place, Hierarchy) else (place, None) for place in places if is_web_address(_place_word(place))]
-    known = next((headers for _, headers in web if headers), None)
-    if known and len({urlsplit(str(address)).netloc.rpartition("@")[2] for address, _ in web}) > 1:
-        raise UsageError("the headers of a hierarchy are for its own host, and here is another one: give headers= that both may have")
-    return known
+def _known_headers(places: Sequence[Place]) -> Headers:
+    """Those of open hierarchies, each for its own host."""
+    known = [place._place[:2] for place in places if isinstance(place, Hierarchy) and place._place[1]]
+    return [f"{without_secrets(address)} {line}" for address, headers in known for line in header_lines(headers)]
 
 
 def _listeners(given: Mapping[str, Any]) -> Listeners:

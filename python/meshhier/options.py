@@ -153,16 +153,18 @@ def _is_true_or(write: Callable[[Any, Files], list[str]]) -> Callable[[Any, File
     return lambda value, files: [] if value is True else write(value, files)
 
 
-def header_lines(headers: Any) -> list[str]:
-    """The lines of requests that a mapping or a list of lines stands for. Raises ValueError if one is none; it has no secret."""
+def header_lines(headers: Any, before: str = "") -> list[str]:
+    """The lines of requests that a mapping or a list of lines stands for; `before`: a pattern of what may begin a line. Raises ValueError
+    if one is none; it has no secret."""
     lines = [f"{name}: {value}" for name, value in headers.items()] if isinstance(headers, Mapping) else [headers] if isinstance(headers, str) else list(headers)
-    if not all(isinstance(line, str) and re.fullmatch(r"[A-Za-z0-9_-]+:[\t -~\x80-\xff]*", line) for line in lines):
+    if not all(isinstance(line, str) and re.fullmatch(before + r"[A-Za-z0-9_-]+:[\t -~\x80-\xff]*", line) for line in lines):
         raise ValueError('names and values of headers, {"Authorization": "Bearer ..."}')
     return lines
 
 
 def _headers(value: Any, files: Files) -> list[str]:
-    return ["@" + files.hold("headers.txt", "".join(line + "\n" for line in header_lines(value)))]  # everybody can read a command line
+    lines = header_lines(value, before="(https?://[^ ]+ )?")  # the host that a line is for
+    return ["@" + files.hold("headers.txt", "".join(line + "\n" for line in lines))]  # everybody can read a command line
 
 
 def _setting(value: Any, _: Files) -> list[str]:

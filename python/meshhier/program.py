@@ -8,7 +8,8 @@ What all of them have in common:
         the program.
     account: is called once, with what the program tells of its result, a text for people.
     memory_budget, limit_rate: bytes, or "2GiB".
-    headers: of requests, where a hierarchy is an address: {"Authorization": "Bearer ..."}.
+    headers: of requests, where a hierarchy is an address: {"Authorization": "Bearer ..."}; of two for the first one's host, or a list whose
+        lines may name the other: ["https://b.org X-Key: 1"]. An open hierarchy brings its own.
     force: replaces what is there; without it that is an ExistsError.
     box, polygon, crs, object, where: a piece of the model. `box` is two corners, `polygon` a GeoJSON file, what is in one or corners (x, y), `object`
         one name or several, `where` a condition as SQL has them.

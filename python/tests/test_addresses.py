@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import threading
 from pathlib import Path
-from typing import Any, Iterator
+from typing import Any, Iterator, Optional
 
 import numpy as np
 import pytest
@@ -18,6 +18,7 @@ from host import Host, half, redirect, slow, status, times, with_headers
 
 import meshhier
 from meshhier import http_client, remote
+from meshhier.http_client import Headers
 
 
 @pytest.fixture(autouse=True)
@@ -432,13 +433,43 @@ def test_damage_is_something_else(own: Host) -> None:
 # Secrets.
 
 
+def keys_of(host: Host) -> set[Optional[str]]:
+    """Those of all requests so far."""
+    keys = {headers.get("X-Key") for _, headers in host.requests}
+    host.requests.clear()
+    return keys
+
+
 def test_headers_of_a_hierarchy_go_to_no_other_host(host: Host, root: Path) -> None:
-    with Host(root) as other, meshhier.open(f"{host.address}/a.hier", headers={"Authorization": "Bearer t0ken"}) as web:
-        with pytest.raises(meshhier.UsageError, match="for its own host"):
-            meshhier.compare(web, f"{other.address}/a.hier")
-        assert other.requests == []
-        assert meshhier.compare(web, f"{host.address}/a.hier").farthest == 0
+    with Host(root) as other, meshhier.open(f"{host.address}/a.hier", headers={"X-Key": "1"}) as web:
+        there = f"{other.address}/a.hier"
+        orders: list[tuple[Any, Any]] = [(web, there), (there, web)]
+        for places in orders:
+            assert meshhier.compare(*places).farthest == 0
+            assert (keys_of(host), keys_of(other)) == ({"1"}, {None})
+        with meshhier.open(there, headers=["X-Key: 2"]) as second:
+            assert meshhier.compare(web, second).farthest == 0
+        assert (keys_of(host), keys_of(other)) == ({"1"}, {"2"})
         assert meshhier.compare(web, root / "a.hier").farthest == 0
+
+
+def test_headers_of_a_comparison_go_to_the_first_host_or_the_one_they_name(host: Host, root: Path) -> None:
+    here = f"{host.address}/a.hier"
+    with Host(root) as other:
+        there = f"{other.address}/a.hier"
+        cases: list[tuple[Headers, object]] = [
+            ({"X-Key": "1"}, ({"1"}, {None})),
+            ([f"{other.address}/ X-Key: 2"], ({None}, {"2"})),
+            ([f"{there} X-Key: 2", "X-Key: 1"], ({"1"}, {"2"})),
+        ]
+        for headers, keys in cases:
+            meshhier.compare(here, there, headers=headers)
+            assert (keys_of(host), keys_of(other)) == keys
+        meshhier.compare(root / "a.hier", there, headers={"X-Key": "3"})
+        assert keys_of(other) == {"3"}
+        with pytest.raises(meshhier.UsageError, match="for a host that no address here names"):
+            meshhier.compare(here, there, headers=["https://example.org X-Key: 3"])
+        assert keys_of(host) == keys_of(other) == set()
 
 
 def test_headers_users_and_queries(host: Host, root: Path, tmp_path: Path) -> None:

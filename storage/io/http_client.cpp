@@ -24,7 +24,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr long kConnectSeconds = 30;
-constexpr long kMostRedirects = 10;
+constexpr int kMostRedirects = 10;
 constexpr int kMostTries = 5;
 constexpr std::chrono::milliseconds kMostWait = 60s;  ///< however long the host asks for
 
@@ -221,6 +221,39 @@ const char* other_authorities() {
   return nullptr;
 }
 
+/// An address in its parts.
+class UrlParts {
+ public:
+  explicit UrlParts(const std::string& url) : url_(curl_url(), curl_url_cleanup) {
+    if (url_ == nullptr)
+      throw std::bad_alloc();
+    is_valid_ = curl_url_set(url_.get(), CURLUPART_URL, url.c_str(), 0) == CURLUE_OK;
+  }
+
+  /// Returns a part as it is meant, without %20; nothing if there is none.
+  std::optional<std::string> part(CURLUPart part) const {
+    char* text = nullptr;
+    if (!is_valid_ ||
+        curl_url_get(url_.get(), part, &text, CURLU_URLDECODE | CURLU_DEFAULT_PORT) != CURLUE_OK)
+      return std::nullopt;
+    const std::unique_ptr<char, void (*)(void*)> owned(text, curl_free);
+    return std::string(text);
+  }
+
+  /// Returns scheme, host and port, "https://example.org:443"; nothing if it is no address.
+  std::optional<std::string> origin() const {
+    const auto host = part(CURLUPART_HOST);
+    if (!host)
+      return std::nullopt;
+    return fmt::format("{}://{}:{}", part(CURLUPART_SCHEME).value_or(""), small_letters(*host),
+                       part(CURLUPART_PORT).value_or(""));
+  }
+
+ private:
+  std::unique_ptr<CURLU, void (*)(CURLU*)> url_;
+  bool is_valid_ = false;
+};
+
 /// Sets libcurl up, once a process, before there are threads that use it.
 void set_up() {
   static const CURLcode code = curl_global_init(CURL_GLOBAL_DEFAULT);
@@ -241,16 +274,12 @@ class HttpClient::Connection {
     if (handle_ == nullptr)
       throw std::bad_alloc();
     set(CURLOPT_NOSIGNAL, 1L);
-    set(CURLOPT_FOLLOWLOCATION, 1L);
-    set(CURLOPT_MAXREDIRS, kMostRedirects);
     set(CURLOPT_PROTOCOLS_STR, "http,https");
-    set(CURLOPT_REDIR_PROTOCOLS_STR, "http,https");
     set(CURLOPT_NETRC, long{CURL_NETRC_OPTIONAL});
     set(CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
     set(CURLOPT_LOW_SPEED_LIMIT, 1L);
     set(CURLOPT_LOW_SPEED_TIME, static_cast<long>(options.silence.count()));
     set(CURLOPT_USERAGENT, "meshhier");
-    set(CURLOPT_HTTPHEADER, headers_.get());
     set(CURLOPT_NOPROGRESS, 0L);
     set(CURLOPT_XFERINFOFUNCTION, look_up);
     set(CURLOPT_HEADERFUNCTION, take_header);
@@ -292,8 +321,33 @@ class HttpClient::Connection {
     curl_easy_setopt(handle_, option, value);
   }
 
+  /// Asks, and follows redirects. libcurl would take all headers but Authorization and Cookie to
+  /// any host.
   CURLcode perform(const HttpAddress& address, Transfer& transfer) {
-    set(CURLOPT_URL, address.url.c_str());
+    const UrlParts own(address.url);
+    std::string url = address.url;
+    for (int redirects = 0; redirects <= kMostRedirects; ++redirects) {
+      introduce(own, UrlParts(url).origin() == own.origin());
+      const CURLcode code = ask(url, transfer);
+      const char* target = nullptr;
+      curl_easy_getinfo(handle_, CURLINFO_REDIRECT_URL, &target);
+      if (code != CURLE_OK || target == nullptr)
+        return code;
+      url = target;
+    }
+    return CURLE_TOO_MANY_REDIRECTS;
+  }
+
+  /// Gives headers, and the address's user and password, to its own host alone.
+  void introduce(const UrlParts& own, bool is_own) {
+    const auto user = own.part(CURLUPART_USER), password = own.part(CURLUPART_PASSWORD);
+    set(CURLOPT_HTTPHEADER, is_own ? headers_.get() : nullptr);
+    set(CURLOPT_USERNAME, is_own && user ? user->c_str() : nullptr);
+    set(CURLOPT_PASSWORD, is_own && password ? password->c_str() : nullptr);
+  }
+
+  CURLcode ask(const std::string& url, Transfer& transfer) {
+    set(CURLOPT_URL, url.c_str());
     set(CURLOPT_HEADERDATA, &transfer);
     set(CURLOPT_WRITEDATA, &transfer);
     set(CURLOPT_XFERINFODATA, &transfer);
@@ -479,6 +533,11 @@ std::optional<HttpAnswer> HttpClient::find(const HttpAddress& address, std::uint
   if (!lease.connection().get(address, first, count, answer))
     return std::nullopt;
   return answer;
+}
+
+bool is_same_host(const std::string& a, const std::string& b) {
+  const auto origin = UrlParts(a).origin();
+  return origin && origin == UrlParts(b).origin();
 }
 
 bool is_web_address(std::string_view text) {

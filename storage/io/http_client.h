@@ -15,8 +15,8 @@
 namespace meshhier::storage {
 
 struct HttpOptions {
-  std::vector<std::string> headers;    ///< "Name: value"; Authorization never goes to another host
-  std::uint64_t bytes_per_second = 0;  ///< for all that comes; 0: no limit
+  std::vector<std::string> headers;           ///< "Name: value"; for the address's own host alone
+  std::uint64_t bytes_per_second = 0;         ///< for all that comes; 0: no limit
   std::chrono::milliseconds first_wait{500};  ///< before the second try; twice as long each time
   std::chrono::seconds silence{30};  ///< without a byte: then a try is over, answered or not
 };
@@ -76,6 +76,9 @@ class HttpClient {
   struct Idle;
   std::unique_ptr<Idle> idle_;
 };
+
+/// Whether scheme, host and port of two addresses are the same; false for what is no address.
+bool is_same_host(const std::string& a, const std::string& b);
 
 /// Whether a text is the address of something on the web.
 bool is_web_address(std::string_view text);

@@ -351,6 +351,39 @@ TEST_F(RemoteFilesTest, RedirectsAreFollowed) {
   EXPECT_EQ(read(*remote.open(remote.root()), 300'000, 100'000), content_.substr(300'000, 100'000));
 }
 
+TEST_F(RemoteFilesTest, SecretsStayAtTheirHostWhateverItRedirectsTo) {
+  const HttpHost other([&](const HostRequest& request) -> HostReply {
+    if (request.target == "/b")
+      return {"HTTP/1.1 307 Go\r\nContent-Length: 0\r\nLocation: " + host_->url() + "c\r\n\r\n"};
+    return answer_with(request, content_);
+  });
+  host_ = std::make_unique<HttpHost>([&](const HostRequest& request) -> HostReply {
+    if (request.target == "/a.3tz")
+      return {"HTTP/1.1 302 Go\r\nContent-Length: 0\r\nLocation: " + other.url() + "b\r\n\r\n"};
+    return answer_with(request, content_);
+  });
+  std::string address = host_->url() + "a.3tz";
+  address.insert(address.find("//") + 2, "me:word@");
+  EXPECT_EQ(problem(reopen(address, {.headers = {"PRIVATE-TOKEN: 123"}})), "");
+  ASSERT_EQ(other.requests(), 1U);
+  EXPECT_THAT(other.heads()[0], Not(HasSubstr("PRIVATE-TOKEN")));
+  EXPECT_THAT(other.heads()[0], Not(HasSubstr("Authorization")));
+  ASSERT_EQ(host_->requests(), 2U);
+  for (const std::string& head : host_->heads()) {
+    EXPECT_THAT(head, HasSubstr("PRIVATE-TOKEN: 123"));
+    EXPECT_THAT(head, HasSubstr("Authorization: Basic bWU6d29yZA=="));
+  }
+}
+
+TEST_F(RemoteFilesTest, RedirectsWithoutEndEnd) {
+  EXPECT_THAT(problem(open([&](const HostRequest& request) -> HostReply {
+                return {"HTTP/1.1 302 Go\r\nContent-Length: 0\r\nLocation: " + request.target +
+                        "x\r\n\r\n"};
+              })),
+              HasSubstr("a.3tz: "));
+  EXPECT_EQ(host_->requests(), 11U);
+}
+
 TEST_F(RemoteFilesTest, WaitsEndWhenTheyAreNotWanted) {
   RemoteFiles& remote = open([](const HostRequest&) {
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -401,6 +434,15 @@ TEST(WebAddressTest, IsKnownByItsScheme) {
     EXPECT_TRUE(is_web_address(address)) << address;
   for (const char* other : {"a.hier", "http:a", "ftp://a", "/http://a", ""})
     EXPECT_FALSE(is_web_address(other)) << other;
+}
+
+TEST(WebAddressTest, HostsAreTheSameBySchemeNameAndPort) {
+  for (const char* same : {"https://a/b", "HTTPS://me:word@A:443/c?d", "https://a"})
+    EXPECT_TRUE(is_same_host("https://a/b.3tz", same)) << same;
+  for (const char* other : {"http://a/b.3tz", "https://b/b.3tz", "https://a:444/b.3tz",
+                            "https://a.b/b.3tz", "https://a@b/b.3tz", "a/b.3tz", "https://", ""})
+    EXPECT_FALSE(is_same_host("https://a/b.3tz", other)) << other;
+  EXPECT_FALSE(is_same_host("", ""));
 }
 
 }  // namespace
