@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "storage/io/child_process.h"
+#include "storage/io/code_memory.h"
 #include "storage/io/own_program.h"
 #include "storage/io/worker_pool.h"
 
@@ -49,6 +50,12 @@ Coding find_coding() {
     return {{},
             why + " and ktx2-encoder, which is not there: \"npm ci --prefix " + place +
                 "\" installs it"};
+  }
+  if (!storage::may_make_code()) {
+    return {{},
+            why +
+                ", which may not run here, as memory may not become executable: in a service of "
+                "systemd MemoryDenyWriteExecute=no allows it"};
   }
   return {{*node, (folder.path() / kScript).string()}, {}};
 }
