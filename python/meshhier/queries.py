@@ -111,7 +111,9 @@ def _field(answers: NDArray[Any], name: str) -> Optional[NDArray[Any]]:
 def _rows(given: Any, columns: int, name: str) -> NDArray[Any]:
     """(n, columns) float64 or float32; one row may come without its list. What is masked is NaN, which nothing is near to."""
     try:
-        array = np.asarray(np.ma.filled(given.astype(np.float64), np.nan) if isinstance(given, np.ma.MaskedArray) else given)
+        if isinstance(given, np.ma.MaskedArray):
+            given = np.where(np.ma.getmaskarray(given), np.nan, np.ma.getdata(given))  # type: ignore[no-untyped-call]
+        array = np.asarray(given)
         if array.dtype.kind == "b":
             raise TypeError
         if array.dtype != np.float32:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 from pathlib import Path
 from typing import Callable
@@ -23,30 +24,44 @@ def meshgen() -> str:
     return path
 
 
-@pytest.fixture(scope="session")
-def torus(meshgen: str, tmp_path_factory: pytest.TempPathFactory) -> str:
-    """A PLY of 20,000 triangles with normals and colours."""
-    path = str(tmp_path_factory.mktemp("mesh") / "torus.ply")
-    subprocess.run(
-        [meshgen, "surface", "--shape", "torus", "--triangles", "20000", "--normals", "--colours", "-o", path],
-        check=True,
-        stdout=subprocess.DEVNULL,
-    )
+def _make_torus(meshgen: str, folder: Path, triangles: int) -> str:
+    path = str(folder / "torus.ply")
+    command = [meshgen, "surface", "--shape", "torus", "--triangles", str(triangles), "--normals", "--colours", "-o", path]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
     return path
 
 
 @pytest.fixture(scope="session")
+def torus(meshgen: str, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A PLY of 20,736 triangles with normals and colours."""
+    return _make_torus(meshgen, tmp_path_factory.mktemp("mesh"), 20000)
+
+
+@pytest.fixture(scope="session")
+def tiny(meshgen: str, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """The same of 2,304 triangles, for what looks at no tiles."""
+    return _make_torus(meshgen, tmp_path_factory.mktemp("tiny"), 2000)
+
+
+@pytest.fixture(scope="session")
 def built(tmp_path_factory: pytest.TempPathFactory) -> Build:
-    """Builds a mesh once for each set of settings: built(mesh, name, key=value, ...) -> path."""
+    """Builds a mesh once for each set of settings: built(mesh, name, key=value, ...) -> path. Names have copies of their own."""
     folder = tmp_path_factory.mktemp("built")
+    known: dict[tuple[str, ...], str] = {}
 
     def build(mesh: str, name: str, **settings: object) -> str:
         path = str(folder / name)
+        keys = {key.replace("__", "."): value for key, value in settings.items()}
+        if "partition.count" not in keys:
+            keys.setdefault("partition.vertices", 700)
+        made = known.setdefault((mesh, Path(name).suffix, repr(sorted(keys.items()))), path)
         if not os.path.exists(path):
-            keys = {key.replace("__", "."): value for key, value in settings.items()}
-            if "partition.count" not in keys:
-                keys.setdefault("partition.vertices", 700)
-            meshhier.build(mesh, path, settings=keys).close()
+            if made == path:
+                meshhier.build(mesh, path, settings=keys).close()
+            elif os.path.isdir(made):
+                shutil.copytree(made, path)
+            else:
+                shutil.copy(made, path)
         return path
 
     return build

@@ -30,12 +30,15 @@ def read_ply(path: str) -> tuple[NDArray[Any], NDArray[np.int64]]:
     return rows, triangles.astype(np.int64)
 
 
-def triangle_set(triangles: NDArray[np.int64], *columns: Optional[NDArray[Any]]) -> NDArray[np.void]:
-    """All triangles by what their corners are, wherever they begin, in one order."""
+def triangle_set(triangles: NDArray[np.int64], *columns: Optional[NDArray[Any]]) -> NDArray[np.int64]:
+    """All triangles by the bits of what their corners are, wherever they begin, in one order: a row each."""
     rows = np.concatenate([np.asarray(c, np.float64).reshape(len(c), -1) for c in columns if c is not None], axis=1)
-    rows = np.ascontiguousarray(np.nan_to_num(rows, nan=-7e77))
-    corners = rows[triangles]
-    turned = [np.ascontiguousarray(np.roll(corners, k, axis=1)).reshape(len(triangles), -1) for k in range(3)]
-    as_bytes = np.stack([np.ascontiguousarray(t.astype(">f8")).view(f"V{8 * t.shape[1]}").ravel() for t in turned])
-    least = [min(three, key=bytes) for three in as_bytes.T]
-    return np.array(sorted(bytes(t) for t in least))
+    bits = np.ascontiguousarray(np.nan_to_num(rows, nan=-7e77)).view(np.int64)
+    order = np.lexsort(bits.T)
+    ranks = np.empty(len(bits), np.int64)
+    ranks[order] = np.cumsum(np.append(0, (np.diff(bits[order], axis=0) != 0).any(axis=1)))
+    turned = np.stack([np.roll(triangles, -k, axis=1) for k in range(3)])
+    codes = (ranks[turned] * [len(bits) ** 2, len(bits), 1]).sum(axis=2)
+    first = codes.argmin(axis=0)
+    least = np.take_along_axis(turned, first[None, :, None], axis=0)[0]
+    return bits[least[np.argsort(codes.min(axis=0), kind="stable")]].reshape(len(triangles), -1)

@@ -36,7 +36,7 @@ def test_a_callback_stops_it_and_it_goes_on(torus: str, tmp_path: Path) -> None:
     assert meshhier.build(torus, tmp_path / "a.hier").triangles == 20736
 
 
-def test_failures_have_types(torus: str, tmp_path: Path) -> None:
+def test_failures_have_types(tiny: str, tmp_path: Path) -> None:
     (tmp_path / "broken.ply").write_text("ply\nformat ascii 1.0\nelement vertex 1\n")
     with pytest.raises(meshhier.InputError, match="broken.ply") as broken:
         meshhier.build(tmp_path / "broken.ply", tmp_path / "a.hier")
@@ -44,12 +44,12 @@ def test_failures_have_types(torus: str, tmp_path: Path) -> None:
     with pytest.raises(meshhier.InputError):
         meshhier.build(tmp_path / "broken.ply", tmp_path / "a.hier", progress=lambda _: None)
     with pytest.raises(meshhier.UsageError, match="no_such_key"):
-        meshhier.build(torus, tmp_path / "a.hier", settings={"no_such_key": 1})
+        meshhier.build(tiny, tmp_path / "a.hier", settings={"no_such_key": 1})
     with pytest.raises(meshhier.BudgetError):
-        meshhier.build(torus, tmp_path / "a.hier", settings={"memory_budget": "1MiB"})
-    hierarchy = meshhier.build(torus, tmp_path / "a.hier")
+        meshhier.build(tiny, tmp_path / "a.hier", settings={"memory_budget": "1MiB"})
+    hierarchy = meshhier.build(tiny, tmp_path / "a.hier")
     with pytest.raises(meshhier.ProgramError) as there:
-        meshhier.build(torus, tmp_path / "a.hier")
+        meshhier.build(tiny, tmp_path / "a.hier")
     assert there.value.exit_code == 5
     tile = tmp_path / "a.hier" / "tiles" / "00" / "000000.glb"
     tile.write_bytes(tile.read_bytes()[:-1] + b"x")
@@ -93,14 +93,14 @@ def test_a_warning_that_is_an_error_stops_the_build(without_materials: Path, tmp
         assert meshhier.build(without_materials, tmp_path / "a.hier", force=True).triangles == 2
 
 
-def test_a_build_without_a_fault_warns_of_nothing(torus: str, tmp_path: Path) -> None:
+def test_a_build_without_a_fault_warns_of_nothing(tiny: str, tmp_path: Path) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        meshhier.build(torus, tmp_path / "a.hier").close()
+        meshhier.build(tiny, tmp_path / "a.hier").close()
 
 
-def test_names_that_begin_like_options_are_names(torus: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_names_that_begin_like_options_are_names(tiny: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "-o.ply").write_bytes(Path(torus).read_bytes())
+    (tmp_path / "-o.ply").write_bytes(Path(tiny).read_bytes())
     meshhier.build("-o.ply", "--force.hier").close()
     meshhier.verify("--force.hier", input="-o.ply")
