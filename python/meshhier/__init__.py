@@ -57,10 +57,10 @@ def open(path: Path, *, headers: Optional[Headers] = None, cache_bytes: int = CA
     Args:
         headers: of requests, for an address: {"Authorization": "Bearer ..."}. They, user and password in the address and those of
             ~/.netrc go to its own host alone, and are in no message; a pickle has them.
-        cache_bytes: parts of an address that stay in memory.
+        cache_bytes: parts of an address that stay in memory. With 0 nothing is fetched before it is asked for.
 
-    On the web little more is fetched than is asked for; a host that sends parts of files (HTTP ranges) is needed for files of more
-    than 64 MiB.
+    On the web little more is fetched than is asked for, and of a cut up to six tiles at once, before they are wanted. A host that sends
+    parts of files (HTTP ranges) is needed for files of more than 64 MiB.
 
     Raises NotAHierarchyError if there is none, or one of another version; CorruptError if a file is damaged; NetworkError.
     Where a build replaces a hierarchy that is open, reading raises ReplacedError: two builds are never mixed.
