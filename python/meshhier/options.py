@@ -167,10 +167,24 @@ def _headers(value: Any, files: Files) -> list[str]:
     return ["@" + files.hold("headers.txt", "".join(line + "\n" for line in lines))]  # everybody can read a command line
 
 
+def _plain(value: Any) -> Any:
+    """A value of numpy, or a path, as JSON has them."""
+    if isinstance(value, (np.generic, np.ndarray)):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise TypeError
+
+
 def _setting(value: Any, _: Files) -> list[str]:
+    refusal = 'keys and values, {"partition.vertices": 4096}'
     if not isinstance(value, tuple) or len(value) != 2 or not isinstance(value[0], str):
-        raise ValueError('keys and values, {"partition.vertices": 4096}')
-    return [f"{value[0]}={value[1] if isinstance(value[1], str) else json.dumps(value[1])}"]
+        raise ValueError(refusal)
+    key, wanted = value[0], os.fspath(value[1]) if isinstance(value[1], os.PathLike) else value[1]
+    try:
+        return [f"{key}={wanted if isinstance(wanted, str) else json.dumps(wanted, default=_plain)}"]
+    except (TypeError, ValueError):
+        raise ValueError(refusal) from None
 
 
 @dataclass(frozen=True)

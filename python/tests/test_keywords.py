@@ -100,6 +100,8 @@ VALUES: list[tuple[str, dict[str, Any], list[str]]] = [
     ("draw", {"scale": "2:1", "grid": 0.5, "cut_height": [1, 2.5]}, ["--cut-height=1,2.5", "--scale=2:1", "--grid=0.5"]),
     ("draw", {"section": ((0, 4), (20, 4)), "plane": (1, 0, 0, -40)}, ["--section", "0,4", "20,4", "--plane=1,0,0,-40"]),
     ("build", {"settings": {"a.b": 3, "c": "x", "d": True}}, ["--set=a.b=3", "--set=c=x", "--set=d=true"]),
+    ("build", {"settings": {"a": np.int64(3), "b": Path("x y"), "c": np.bool_(True), "d": {"e": [np.float64(0.5)]}}}, ["--set=a=3", "--set=b=x y", "--set=c=true", '--set=d={"e": [0.5]}']),
+    ("build", {"settings": {"a": np.array([1, 2])}}, ["--set=a=[1, 2]"]),
     ("verify", {"input": ["a.ply", Path("b.ply")], "error": False}, ["--input=a.ply", "--input=b.ply"]),
     ("inspect", {"prefix": True}, ["--objects"]),
 ]  # fmt: skip
@@ -117,7 +119,7 @@ def test_values_are_words(command: str, given: dict[str, Any], words: list[str])
     [
         ("export", {"level": True}), ("export", {"clip": 1}), ("export", {"box": ((0, 0, 0), (1, 1))}), ("export", {"box": (0, 1)}), ("export", {"node": 3}),
         ("export", {"box": ((1, 1, 1), (0, 0, 0))}), ("export", {"node": "root"}),
-        ("export", {"error": None, "level": []}), ("draw", {"plane": (1, 2, 3)}), ("preview", {"size": (1, 2, 3)}), ("build", {"settings": "a=b"}),
+        ("export", {"error": None, "level": []}), ("draw", {"plane": (1, 2, 3)}), ("preview", {"size": (1, 2, 3)}), ("build", {"settings": "a=b"}), ("build", {"settings": {"a": {1, 2}}}),
         ("build", {"within": 3}), ("compare", {"transform": [[1, 0], [0, 1]]}), ("export", {"headers": {"a": "b\r\nc: d"}}), ("export", {"headers": ["no"]}),
     ],
 )  # fmt: skip
