@@ -32,16 +32,14 @@ class CellTiles:
     Attributes:
         element: for the page.
         count: of tiles.
-        error: how far they are from the original at the most, input units; 0: they are all, and nothing is rounded.
+        error: how far they are from the original at the most, input units.
+        is_exact: they are all, and nothing is rounded.
     """
 
     element: str
     count: int
     error: float
-
-    @property
-    def is_exact(self) -> bool:
-        return self.error == 0
+    is_exact: bool
 
 
 def held_by(name: str, files: Mapping[str, str]) -> str:
@@ -72,9 +70,8 @@ def _packed(hierarchy: Hierarchy, name: str, room: int) -> Optional[CellTiles]:
     if hierarchy._is_replaced():
         raise replaced(hierarchy.path)
     files = json.loads(made[made.index("{") : made.rindex("}") + 1])["files"]
-    tiles = [_node_of(file) for file in files if file.startswith("tiles/")]
     rounding = _rounding(_unpacked(files["hierarchy.json"])) - _rounding(hierarchy.manifest)
-    return CellTiles(held_by(name, files), len(tiles), _error(hierarchy, tiles) + rounding)
+    return _cell_tiles(hierarchy, name, files, rounding)
 
 
 def _place(hierarchy: Hierarchy, folder: str) -> Union[Hierarchy, str]:
@@ -85,6 +82,12 @@ def _place(hierarchy: Hierarchy, folder: str) -> Union[Hierarchy, str]:
     link = os.path.join(folder, "model" + os.path.splitext(place)[1])
     os.symlink(place, link)
     return link
+
+
+def _cell_tiles(hierarchy: Hierarchy, name: str, files: Mapping[str, str], rounding: float) -> CellTiles:
+    tiles = [_node_of(file) for file in files if file.startswith("tiles/")]
+    is_exact = len(tiles) == len(hierarchy._index) and rounding == 0
+    return CellTiles(held_by(name, files), len(tiles), _error(hierarchy, tiles) + rounding, is_exact)
 
 
 def _node_of(file: str) -> Node:
@@ -117,14 +120,13 @@ def _stored(hierarchy: Hierarchy, name: str, room: int) -> Optional[CellTiles]:
     filling = _Filling(hierarchy, room)
     if not filling.fill():
         return None
-    return CellTiles(held_by(name, filling.files()), len(filling.tiles), _error(hierarchy, filling.tiles))
+    return _cell_tiles(hierarchy, name, filling.files(), 0.0)
 
 
 class _Filling:
     """Files as they are stored that fit into a room of bytes: the root, then always the tiles below the one with the largest error."""
 
     def __init__(self, hierarchy: Hierarchy, room: int) -> None:
-        self.tiles: list[Node] = []
         self._hierarchy = hierarchy
         self._entries = {"hierarchy.json": _entry(hierarchy._files.read("hierarchy.json"))}
         self._index = hierarchy._read_sealed("tiles.bin", hierarchy._manifest.index_bytes, hierarchy._manifest.index_checksum)
@@ -150,7 +152,6 @@ class _Filling:
             return False
         self._entries.update(entries)
         self._room -= taken
-        self.tiles += nodes
         self._last_record = last
         return True
 

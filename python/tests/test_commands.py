@@ -393,7 +393,8 @@ def test_a_callback_that_raises_stops_a_build_at_once(large: str, tmp_path: Path
 
 
 CTRL_C = """
-import sys, meshhier
+import signal, sys, meshhier
+signal.signal(signal.SIGINT, signal.default_int_handler)  # who runs these tests in the background has it ignored
 def tell(progress):
     print(progress.stage, flush=True)
 try:

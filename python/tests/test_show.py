@@ -109,6 +109,21 @@ def _below(hierarchy: meshhier.Hierarchy, node: meshhier.Node, there: set[str]) 
     return children if children and all(hierarchy._manifest.tile_name(child) in there for child in children) else [node]
 
 
+@pytest.mark.parametrize("program", [True, False])
+def test_a_flat_model_is_not_all_there_because_it_is_exact(program: bool, viewer: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Coarse tiles of a plane are nowhere off."""
+    side = 60
+    lines = [f"{x} {y} 0" for y in range(side) for x in range(side)]
+    quads = [f"4 {i} {i + 1} {i + side + 1} {i + side}" for i in range(side * (side - 1)) if i % side < side - 1]
+    head = f"ply\nformat ascii 1.0\nelement vertex {len(lines)}\nproperty float x\nproperty float y\nproperty float z\nelement face {len(quads)}\n"
+    (tmp_path / "a.ply").write_text("\n".join([head + "property list uchar int vertex_indices\nend_header", *lines, *quads, ""]))
+    with meshhier.build(tmp_path / "a.ply", settings={"partition.vertices": 200, "preview": False}) as hierarchy:
+        if not program:
+            monkeypatch.setenv("MESHHIER", "/nowhere/meshhier")
+        cell = hierarchy.show(size=len(viewer) + 35_000)
+    assert re.search(r"a: \d+ of \d+ tiles, within \S+ of the original", repr(cell)) and 'data-link="http' in page_of(cell)
+
+
 def test_a_story_takes_no_room(model: str, tmp_path: Path) -> None:
     shutil.copytree(model, tmp_path / "a.hier")
     with meshhier.open(tmp_path / "a.hier") as hierarchy:
