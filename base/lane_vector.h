@@ -24,7 +24,7 @@ inline float dot_of(FourFloats a, FourFloats b) {
   return (product[0] + product[1]) + product[2];
 }
 
-/// Of length 1; 0 if it has no length.
+/// Returns the vector scaled to length 1; 0 if it has no length.
 inline FourFloats unit_of(FourFloats lanes) {
   const float squared = dot_of(lanes, lanes);
   if (squared >= std::numeric_limits<float>::min() && squared <= std::numeric_limits<float>::max())

@@ -14,7 +14,7 @@ bool is_of_input(const storage::HierarchyReader& reader, const TileRecord& recor
 /// else as its vertices are apart, seen from above; 1, 2 or 5 times a power of 10. O(tiles).
 double finest_detail(const storage::HierarchyReader& reader, const MapFrame& frame);
 
-/// What a tile's vertices have to be as dense as pixels for.
+/// The purpose for which a tile's vertices must be as dense as pixels.
 enum class VertexUse {
   picture,             ///< for colours, if it has no picture
   picture_and_heights  ///< for heights: a grid of them comes out as it is

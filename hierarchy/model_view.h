@@ -8,8 +8,8 @@
 
 namespace meshhier {
 
-/// What has its default is as if nobody had said it. Lengths and coordinates are of the input, but
-/// for those of `camera`.
+/// A member that has its default counts as unsaid. Lengths and coordinates are the input's, except
+/// those of `camera`.
 struct ModelView {
   /// Place and target in the page's world, three numbers each: the input's coordinates less the
   /// hierarchy's origin, turned until y is up, heights stretched. Empty: all of the model.

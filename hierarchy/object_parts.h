@@ -1,4 +1,4 @@
-// What the triangles of one tile tell of the objects that they belong to.
+// Sums of the triangles of one tile, object by object.
 #pragma once
 
 #include "base/bounds.h"

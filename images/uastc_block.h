@@ -62,7 +62,7 @@ struct UastcMode {
 };
 
 inline constexpr std::uint8_t kUastcModes = 19, kSolidMode = 8;
-/// Of kSolidMode only the code counts.
+/// Returns the mode of that number; in kSolidMode's row only the code counts.
 const UastcMode& uastc_mode(std::uint8_t mode);
 
 /// Return the patterns of a list, and the anchors of a pattern's subsets.
@@ -103,7 +103,7 @@ struct UastcHints {
   std::array<std::uint8_t, 2> intensities{};  ///< ETC1's tables of both halves
   std::uint8_t bias = 13;                     ///< what is added to ETC1's colours; 13: nothing
   std::uint8_t alpha = 0x1d;                  ///< EAC's table, and 16 times its multiplier
-  /// Of solid blocks.
+  /// These two describe solid blocks alone.
   std::uint8_t selector = 0;
   std::array<std::uint8_t, 3> colour{};  ///< 5 bits with `difference`, else 4
 };

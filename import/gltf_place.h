@@ -10,7 +10,7 @@ namespace meshhier::importing {
 
 struct GltfPlace {
   mesh_io::GltfTransform placement{};
-  /// Of a tileset, or of a like tree, whose nodes are evident for nobody.
+  /// It belongs to a tileset or a similar tree, whose nodes are never evident as objects.
   bool is_tile = false;
   /// Before names that only number features: "tile.cmpt/2/"; empty: it is alone.
   std::string name{};

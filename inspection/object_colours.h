@@ -56,8 +56,8 @@ class ObjectColours {
 
   bool is_number_ = false;
   render::ColourRamp ramp_{};
-  /// Of each object: its part of the way along the ramp, or the number of its colour; no number if
-  /// it has no value.
+  /// Each object has its part of the way along the ramp, or the number of its colour; NaN if it has
+  /// no value.
   std::vector<float> shades_;
   std::string legend_;
 };

@@ -36,7 +36,7 @@ class MeshContent;  // recognition.h
 /// How sure it is that a file is of a kind. A kind that is sure wins over one that is likely.
 enum class Certainty : std::uint8_t { none, likely, sure };
 
-/// What a file names, found without its mesh being read.
+/// Facts about a file that are found without reading its mesh.
 struct MeshOutline {
   std::vector<std::filesystem::path> buffers{};  ///< files with its vertices and triangles
   bool names_ktx2 = false;                       ///< it uses pictures in KTX2

@@ -34,7 +34,7 @@ struct GltfRoom {
   /// Waits until files that are read at once have so many bytes left of `memory_bytes`, which are
   /// taken as long as what it returns is there; null: no others are read.
   std::function<std::shared_ptr<const void>(std::uint64_t)> take_memory{};
-  /// Of packed content: returns where in the file itself a range of it lies as it is, if it does.
+  /// Returns where in the file itself a range of packed content lies unpacked, if it does.
   std::function<std::optional<std::uint64_t>(std::uint64_t offset, std::uint64_t bytes)>
       find_plain{};
 };

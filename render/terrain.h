@@ -29,7 +29,7 @@ std::optional<Terrain> terrain_of(const PublishedTile& root, Vec3d up);
 /// Where a corner has a normal, as if its slope were so many times as steep; a facet's own stays.
 void shade_steeper(const Terrain& terrain, double relief, std::span<Facet> facets);
 
-/// What few vertices lie below and above of, along a direction of length 1.
+/// Few vertices lie below `low` or above `high`, along a direction of length 1.
 struct HeightRange {
   Vec3d along;
   double low = 0, high = 0;

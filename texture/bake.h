@@ -26,7 +26,7 @@ struct TexturedSurface {
   std::span<const TileTriangle> triangles;  ///< numbers of positions
   std::span<const CornerTexcoords> corners;
   const images::Image* image = nullptr;  ///< null: the surface has no triangles
-  /// Of a finer surface: for each vertex one of the tile that lies near it, or kNoVertex
+  /// Each vertex of a finer surface has here a vertex of the tile near it, or kNoVertex
   /// (vertex_feet.h). Without them each texel is searched for.
   std::span<const std::uint32_t> beside{};
 };

@@ -51,8 +51,8 @@ class ChartOverlap {
   const Faces& faces_;
   std::vector<std::uint32_t> chart_of_;  ///< the last one asked for that has the triangle
   std::uint32_t chart_ = 0;
-  /// Of border edges and rows: the row, the first texel not left of the edge, 1 where the chart
-  /// begins there or 0 where it ends; 32, 31 and 1 bits.
+  /// Each is a border edge that crosses a row: 32 bits hold the row, 31 the first texel not left of
+  /// the edge, 1 whether the chart begins there (1) or ends (0).
   std::vector<std::uint64_t> crossings_;
 };
 

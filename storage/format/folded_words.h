@@ -55,7 +55,8 @@ class LetterTable {
     bool is_unspaced = false;
     std::u32string letters;
   };
-  /// What code points become: every `step`-th one from `first` up to `last`.
+  /// A row of the folding table: it folds every `step`-th code point from `first` to
+  /// `last`.
   struct Range {
     char32_t first = 0, last = 0, step = 1;
     bool is_running = false;  ///< the next one becomes the letter `step` behind

@@ -26,7 +26,7 @@ class NotedFiles {
   /// none. Throws Error(io).
   std::uint64_t mark(const InputNote& note) const;
 
-  /// What a file counts as that is not there any more.
+  /// Says whether a file that has gone counts as unchanged.
   enum class Gone { is_same, is_another };
   struct Question {
     std::size_t from = 0;  ///< the first file that is compared

@@ -1,4 +1,5 @@
-// What the manifest tells of objects.bin and object_words.bin, as JSON (docs/file_format.md).
+// The manifest describes objects.bin and object_words.bin; this reads and writes that JSON
+// (docs/file_format.md).
 #pragma once
 
 #include "storage/format/layout.h"

@@ -33,7 +33,7 @@
 
 namespace meshhier::storage {
 
-/// What the manifest tells of a table.
+/// Facts about a table that its reader needs before the first read; the manifest keeps them.
 struct ObjectTableFacts {
   std::uint64_t bytes = 0;
   std::uint64_t checksum = 0;  ///< XXH3-64 of the file

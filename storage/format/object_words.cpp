@@ -19,7 +19,7 @@ namespace {
 /// they are ASCII.
 constexpr std::uint32_t kMoreDigits = 0x40;
 constexpr int kDigitBits = 6;
-/// Of the first object, in a row's name.
+/// A row's name ends with so many digits: the row's first object.
 constexpr std::size_t kFirstDigits = 6;
 /// Bytes of a word in a message.
 constexpr std::size_t kMostShownWord = 60;

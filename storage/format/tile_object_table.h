@@ -42,9 +42,9 @@ inline constexpr const char* kFeatureAttribute = "_FEATURE_ID_0";
 
 inline constexpr std::size_t kMostTileTextBytes = 255;
 inline constexpr std::uint64_t kMostTileTableBytes = std::uint64_t{4} << 20;
-/// Of the names of all properties: the JSON has each twice.
+/// The names of all properties together take at most so many bytes: the JSON has each twice.
 inline constexpr std::size_t kMostColumnNameBytes = 4096;
-/// The object, its name, and what else is known.
+/// A table has a column for the object, one for its name, and one for each property.
 inline constexpr std::size_t kMostColumns = 2 + kMostObjectProperties;
 
 /// A column, and where it lies in the table.

@@ -1,5 +1,5 @@
-// What a view is: one table, read for links, for JSON in configs and manifests, and for the
-// references of the config's keys (docs/file_format.md, section 2.1); view_link.h has the links.
+// One table defines what a view is. Links, JSON in configs and manifests, and the references of the
+// config's keys are read by it (docs/file_format.md, section 2.1); view_link.h has the links.
 //
 //   link   #MODEL&1,2,3,0,0,0&colours=attribute&attribute=distance&range=-0.5,0.5
 //   JSON   {"camera": [1, 2, 3, 0, 0, 0], "colours": "attribute", "attribute": "distance",
@@ -24,7 +24,7 @@
 
 namespace meshhier::storage {
 
-/// Of a view's JSON: a manifest of at most 1 MiB has it twice.
+/// A view's JSON has at most so many bytes: a manifest of at most 1 MiB has it twice.
 inline constexpr std::size_t kMostViewBytes = std::size_t{64} * 1024;
 
 /// The member that holds a key's value.
@@ -32,8 +32,8 @@ using ViewField =
     std::variant<bool ModelView::*, std::string ModelView::*, std::optional<double> ModelView::*,
                  std::vector<double> ModelView::*, std::vector<std::string> ModelView::*>;
 
-/// A link that says anything of a part says all of it: the rest has its default. Of what it does
-/// not say it is as the model is seen first.
+/// A link that names any key of a part replaces the whole part: its other keys get their defaults.
+/// Parts that a link does not name stay as in the model's first view.
 enum class ViewPart : std::uint8_t {
   camera,
   projection,
@@ -76,7 +76,7 @@ void assign(const ViewKey& key, const nlohmann::ordered_json& value, ModelView& 
 /// Returns the value of a key as JSON has it; null if it has its default.
 nlohmann::ordered_json value_json(const ViewKey& key, const ModelView& view);
 
-/// What is wrong with a view.
+/// A key that makes a view wrong, and the values that it may have.
 struct ViewProblem {
   std::string key;  ///< empty: the view itself
   std::string expected;

@@ -13,7 +13,7 @@
 
 namespace meshhier::storage {
 
-/// What a link says, and the keys in it that are none of a view: "notes".
+/// A parsed link: the view, and the keys that belong to no view ("notes").
 struct ViewLink {
   ModelView view;
   std::vector<std::string> others{};
