@@ -2,22 +2,13 @@
 // The counts of a tile (docs/file_format.md, section 4.4), checked before anything is sized by them.
 import type { Glb } from './glb.js';
 import { MOST_ELEMENTS, MOST_OWN, MOST_ROOT_TRIANGLES, MOST_SIDE, mostSplits } from './limits.js';
+import type { TileRecord } from './tile_index.js';
+import type { Node } from './tree.js';
+
+const KEYS = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border', 'pictureWidth', 'pictureHeight', 'hasNormalMap'] as const;
 
 /// The index says this of a tile.
-export interface ExpectedCounts {
-  readonly level: number;
-  readonly index: number;
-  readonly own: number;
-  readonly ghosts: number;
-  readonly copies: number;
-  readonly splits: number;
-  readonly interior: number;
-  readonly border: number;
-  /// The texels of the picture, and of the normal map; 0: there is neither.
-  readonly pictureWidth: number;
-  readonly pictureHeight: number;
-  readonly hasNormalMap: boolean;
-}
+export type ExpectedCounts = Pick<Node & TileRecord, (typeof KEYS)[number]>;
 
 export interface TileCounts extends ExpectedCounts {
   /// Colours are values of a screen; else they are light, as glTF has it.
@@ -32,7 +23,6 @@ const NO_OBJECTS_VERSION = 6; // the same without a table of objects
 const NO_MAPS_VERSION = 5; // the same in hierarchies without normal maps
 const NO_VALUES_VERSION = 4; // the same without values
 const SCREEN_COLOURS_VERSION = 3; // the same with colours as screens have them
-const KEYS = ['level', 'index', 'own', 'ghosts', 'copies', 'splits', 'interior', 'border', 'pictureWidth', 'pictureHeight', 'hasNormalMap'] as const;
 /// Tiles without splits, pictures, values or normal maps need not say these.
 const ABSENT = { splitCount: 0, splitOf: -1, imageWidth: 0, imageHeight: 0, image: -1, values: -1, normalMapWidth: 0, normalMapHeight: 0, normalMap: -1 };
 
