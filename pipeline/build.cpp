@@ -38,8 +38,7 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
 Error with_resume_hint(const Error& error, const storage::WorkDirectory& work,
                        const std::filesystem::path& output);
 
-/// Claims the disk that is needed, as far as it is known; throws Error(budget) if others have
-/// claimed it just now.
+/// Claims the disk that is needed, as far as it is known; throws Error(budget) if there is less.
 void claim_room(const storage::WorkDirectory& work, const importing::MeshInput& input,
                 const std::optional<BuildPlan>& plan, const config::Config& config,
                 storage::FileSystem& files, storage::ScratchUse& use);
@@ -107,13 +106,13 @@ namespace {
 void claim_room(const storage::WorkDirectory& work, const importing::MeshInput& input,
                 const std::optional<BuildPlan>& plan, const config::Config& config,
                 storage::FileSystem& files, storage::ScratchUse& use) {
-  if (plan) {
-    claim_disk(work.path(), plan->disk.room_bytes, files, use);
-    check_disk(plan->disk, config.output, files);
-  } else {
-    claim_disk(work.path(), import_disk(input, config), files, use);
-    check_import_disk(import_disk(input, config), config.output, files);
-  }
+  const std::uint64_t bytes = plan ? plan->disk.room_bytes : import_disk(input, config);
+  claim_disk(work.path(), bytes, files, use, [&] {
+    if (plan)
+      check_disk(plan->disk, config.output, files);
+    else
+      check_import_disk(bytes, config.output, files);
+  });
 }
 
 /// Bytes that went to files which are not temporary.

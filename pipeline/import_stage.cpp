@@ -200,8 +200,8 @@ BuildPlan import_and_plan(importing::MeshInput& input, storage::WorkDirectory& w
   BuildPlan plan = make_plan();
   plan.disk.temporary_bytes = std::max(plan.disk.temporary_bytes, import_disk(input, config));
   check_coders(plan.job);
-  claim_disk(work.path(), plan.disk.room_bytes, environment.files, pool.scratch_use());
-  check_disk(plan.disk, config.output, environment.files);
+  claim_disk(work.path(), plan.disk.room_bytes, environment.files, pool.scratch_use(),
+             [&] { check_disk(plan.disk, config.output, environment.files); });
   return plan;
 }
 

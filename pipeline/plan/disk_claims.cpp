@@ -2,9 +2,12 @@
 
 #include "base/error.h"
 #include "storage/format/layout.h"
+#include "storage/format/work_directory.h"
+#include "storage/io/neighbours.h"
 
 #include <algorithm>
 #include <charconv>
+#include <set>
 #include <span>
 #include <string>
 
@@ -39,25 +42,56 @@ std::uint64_t left_of_claim(const fs::path& work, storage::FileSystem& files) {
   }
 }
 
-}  // namespace
-
-void claim_disk(const fs::path& work, std::uint64_t bytes, storage::FileSystem& files,
-                storage::ScratchUse& use) {
+void write_claim(const fs::path& work, std::uint64_t bytes, storage::FileSystem& files,
+                 storage::ScratchUse& use) {
   const std::string text = fmt::format("{:0{}}", bytes, kClaimDigits);
   files.reopen(storage::lock_path(work))->write_at(0, std::as_bytes(std::span(text)));
   use.add_written(text.size());
 }
 
+/// Returns the work directories of builds, perhaps stopped ones, on a file system: those in one
+/// folder, and those that are at work elsewhere.
+std::set<fs::path> works_beside(const fs::path& parent, storage::FileSystem& files) {
+  std::set<fs::path> works;
+  const auto add = [&](const fs::path& work) {
+    const auto name = storage::leftover_name(work.filename().string());
+    if (name && name->kind == storage::Leftover::build)
+      works.insert(files.canonical(work));
+  };
+  if (files.can_list(parent)) {
+    for (const fs::path& child : files.children(parent))
+      add(child);
+  }
+  if (const auto* shared = dynamic_cast<const storage::SharedFileSystem*>(&files)) {
+    for (const fs::path& lock : shared->locked_files(parent, "/" + storage::lock_path("").string()))
+      add(lock.parent_path());
+  }
+  return works;
+}
+
+}  // namespace
+
+void claim_disk(const fs::path& work, std::uint64_t bytes, storage::FileSystem& files,
+                storage::ScratchUse& use, const std::function<void()>& check) {
+  const storage::DeviceTurn turn(work);
+  write_claim(work, bytes, files, use);
+  try {
+    check();
+  } catch (...) {
+    write_claim(work, 0, files, use);
+    throw;
+  }
+}
+
 std::uint64_t claimed_beside(const fs::path& output, storage::FileSystem& files) {
-  const fs::path parent = output.parent_path().empty() ? "." : output.parent_path();
+  const fs::path parent = storage::existing_directory(files, output);
   if (!files.is_directory(parent))
     return 0;
+  std::set<fs::path> works = works_beside(parent, files);
+  works.erase(files.canonical(storage::work_path(output)));
   std::uint64_t bytes = 0;
-  for (const fs::path& child : files.children(parent)) {
-    const auto name = storage::leftover_name(child.filename().string());
-    if (name && name->kind == storage::Leftover::build && name->output != output.filename())
-      bytes += left_of_claim(child, files);
-  }
+  for (const fs::path& work : works)
+    bytes += left_of_claim(work, files);
   return bytes;
 }
 

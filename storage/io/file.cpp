@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "storage/io/link_free_paths.h"
+#include "storage/io/neighbours.h"
 #include "storage/io/posix_file.h"
 #include "storage/io/stream.h"
 #include "storage/io/system_failure.h"
@@ -89,8 +90,13 @@ FileIdentity identity_of(const struct stat& status) {
           nanoseconds(status.st_ctim)};
 }
 
-class PosixFileSystem : public FileSystem {
+class PosixFileSystem : public FileSystem, public SharedFileSystem {
  public:
+  std::vector<std::filesystem::path> locked_files(const std::filesystem::path& directory,
+                                                  std::string_view ending) const override {
+    return storage::locked_files(directory, ending);
+  }
+
   FileSystem& input() override { return with_archives_; }
 
   std::unique_ptr<File> open(const std::filesystem::path& path) override {

@@ -310,6 +310,7 @@ std::string check_system(const Source& source, const Include& include) {
       {"storage/io/descriptor.h", {"unistd.h"}},
       {"storage/io/folder.cpp", {"dirent.h", "fcntl.h", "sys/stat.h"}},
       {"storage/io/link_free_paths.cpp", {"dirent.h", "fcntl.h", "sys/stat.h"}},
+      {"storage/io/neighbours.cpp", {"fcntl.h", "sys/file.h", "sys/stat.h"}},
       {"storage/io/posix_file.h", {"fcntl.h", "sys/stat.h", "unistd.h"}},
       {"storage/io/own_program.cpp", {"sys/auxv.h"}},
       {"storage/io/process.cpp", {"fcntl.h", "sys/resource.h", "unistd.h"}},

@@ -1,17 +1,47 @@
 #include "pipeline/plan/disk_claims.h"
 
+#include "base/error.h"
 #include "storage/format/layout.h"
+#include "storage/io/forwarding_files.h"
+#include "storage/io/neighbours.h"
 #include "tests/support/sample_hierarchy.h"
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace meshhier::pipeline {
 namespace {
+
+constexpr std::uint64_t kNoteBytes = 20;  // a claim itself
+
+/// Sees what the processes of one test have locked, not other builds on this machine.
+class FilesOfTest final : public storage::ForwardingFiles, public storage::SharedFileSystem {
+ public:
+  FilesOfTest(storage::FileSystem& real, const std::filesystem::path& directory)
+      : ForwardingFiles(real), below_(real.canonical(directory).string() + '/') {}
+
+  std::vector<std::filesystem::path> locked_files(const std::filesystem::path& directory,
+                                                  std::string_view ending) const override {
+    auto found = storage::locked_files(directory, ending);
+    std::erase_if(found, [this](const std::filesystem::path& path) {
+      return !path.native().starts_with(below_);
+    });
+    return found;
+  }
+
+ private:
+  std::string below_;
+};
 
 class DiskClaimsTest : public testing::Test {
  protected:
@@ -22,28 +52,33 @@ class DiskClaimsTest : public testing::Test {
     return files_->try_lock(storage::lock_path(storage::work_path(output(name))));
   }
 
+  void claim(const std::filesystem::path& work, std::uint64_t bytes) {
+    claim_disk(work, bytes, *files_, use_, [] {});
+  }
+
   storage::ScratchUse use_;
   tests::TemporaryDirectory directory_;
-  std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
+  std::unique_ptr<storage::FileSystem> real_ = storage::make_posix_file_system();
+  std::unique_ptr<storage::FileSystem> files_ =
+      std::make_unique<FilesOfTest>(*real_, directory_.path());
 };
 
 TEST_F(DiskClaimsTest, WhatOthersWillYetWriteCounts) {
   auto first = begin("a.hier");
   const auto work = storage::work_path(output("a.hier"));
   EXPECT_EQ(claimed_beside(output("b.hier"), *files_), 0U) << "nothing is claimed yet";
-  claim_disk(work, 5'000'000'000, *files_, use_);
-  claim_disk(work, 1000, *files_, use_);
+  claim(work, 5'000'000);
+  claim(work, 1000);
   const auto second = begin("c.hier");
-  claim_disk(storage::work_path(output("c.hier")), 2000, *files_, use_);
-  constexpr std::uint64_t kNotes = 20;  // a claim itself
-  EXPECT_EQ(claimed_beside(output("b.hier"), *files_), 3000U - 2 * kNotes);
-  EXPECT_EQ(claimed_beside(output("a.hier"), *files_), 2000U - kNotes) << "not its own";
+  claim(storage::work_path(output("c.hier")), 2000);
+  EXPECT_EQ(claimed_beside(output("b.hier"), *files_), 3000U - 2 * kNoteBytes);
+  EXPECT_EQ(claimed_beside(output("a.hier"), *files_), 2000U - kNoteBytes) << "not its own";
   std::ofstream(work / "tiles") << std::string(300, 'x');
-  EXPECT_EQ(claimed_beside(output("c.hier"), *files_), 700U - kNotes);
+  EXPECT_EQ(claimed_beside(output("c.hier"), *files_), 700U - kNoteBytes);
   std::ofstream(work / "tiles") << std::string(3000, 'x');
   EXPECT_EQ(claimed_beside(output("c.hier"), *files_), 0U) << "it takes more than it claimed";
   first.reset();
-  EXPECT_EQ(claimed_beside(output("b.hier"), *files_), 2000U - kNotes) << "it was stopped";
+  EXPECT_EQ(claimed_beside(output("b.hier"), *files_), 2000U - kNoteBytes) << "it was stopped";
 }
 
 TEST_F(DiskClaimsTest, WhatIsNoClaimCountsForNothing) {
@@ -51,6 +86,77 @@ TEST_F(DiskClaimsTest, WhatIsNoClaimCountsForNothing) {
   std::ofstream(storage::lock_path(storage::work_path(output("a.hier")))) << "no number";
   EXPECT_EQ(claimed_beside(output("b.hier"), *files_), 0U);
   EXPECT_EQ(claimed_beside(output("there/is/none.hier"), *files_), 0U);
+}
+
+TEST_F(DiskClaimsTest, BuildsInOtherFoldersOfTheDiskCount) {
+  const auto lock = begin("one/a.hier");
+  claim(storage::work_path(output("one/a.hier")), 5000);
+  files_->make_directories(output("two"));
+  EXPECT_EQ(claimed_beside(output("two/b.hier"), *files_), 5000U - kNoteBytes);
+  EXPECT_EQ(claimed_beside(output("three/four/b.hier"), *files_), 5000U - kNoteBytes);
+}
+
+TEST_F(DiskClaimsTest, WhatIsRefusedIsNotClaimed) {
+  const auto lock = begin("a.hier");
+  const auto work = storage::work_path(output("a.hier"));
+  EXPECT_THROW(
+      claim_disk(work, 5000, *files_, use_, [] { throw Error(ErrorCode::budget, "too little"); }),
+      Error);
+  EXPECT_EQ(claimed_beside(output("b.hier"), *files_), 0U);
+}
+
+/// Builds that claim at one moment, each a process of its own and in a folder of its own.
+class ClaimingProcesses : public DiskClaimsTest {
+ protected:
+  static constexpr int kCount = 6;
+
+  /// Returns whether the claim of the build was granted, of a disk for one and a half of them.
+  bool is_granted(int number) {
+    const auto made = output(("folder" + std::to_string(number % 3)).c_str()) /
+                      (std::to_string(number) + ".hier");
+    const auto work = storage::work_path(made);
+    files_->make_directories(work);
+    const auto lock = files_->try_lock(storage::lock_path(work));
+    rendezvous("ready", number);
+    bool granted = true;
+    try {
+      claim_disk(work, 1000, *files_, use_, [&] {
+        if (claimed_beside(made, *files_) > 500)
+          throw Error(ErrorCode::budget, "too little");
+      });
+    } catch (const Error&) {
+      granted = false;
+    }
+    rendezvous("claimed", number);  // until then it holds what it has
+    return granted;
+  }
+
+ private:
+  /// Returns when all have come.
+  void rendezvous(const std::string& name, int number) const {
+    std::ofstream(output((name + std::to_string(number)).c_str())) << "here";
+    for (int other = 0; other < kCount; ++other) {
+      while (!std::filesystem::exists(output((name + std::to_string(other)).c_str())))
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  }
+};
+
+TEST_F(ClaimingProcesses, OfManyAtOneMomentOneIsGranted) {
+  std::vector<pid_t> processes;
+  for (int i = 0; i < kCount; ++i) {
+    processes.push_back(fork());
+    if (processes.back() == 0)
+      _exit(is_granted(i) ? 1 : 0);
+  }
+  int granted = 0;
+  for (const pid_t process : processes) {
+    int status = 0;
+    ASSERT_EQ(waitpid(process, &status, 0), process);
+    ASSERT_TRUE(WIFEXITED(status));
+    granted += WEXITSTATUS(status);
+  }
+  EXPECT_EQ(granted, 1);
 }
 
 }  // namespace
