@@ -115,7 +115,8 @@ class ObjPictures {
     }
     const auto refuse = [&](const std::string& why) {
       throw Error(ErrorCode::exists,
-                  fmt::format("{} {}, so --force does not replace it", folder_.string(), why));
+                  fmt::format("{} {}, and is never replaced: move it away, or name another output",
+                              folder_.string(), why));
     };
     if (files_.is_link(folder_) || !files_.is_directory(folder_))
       refuse("is no folder");

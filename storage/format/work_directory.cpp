@@ -109,7 +109,8 @@ bool check_output(FileSystem& files, const Output& output, bool replace, const c
   }
   if (const std::string why = objection(files, output); !why.empty()) {
     throw Error(ErrorCode::exists,
-                fmt::format("{} {}, so --force does not replace it", output.path.string(), why));
+                fmt::format("{} {}, and is never replaced: move it away, or name another output",
+                            output.path.string(), why));
   }
   return true;
 }

@@ -174,7 +174,10 @@ TEST_F(Update, WhatIsNoHierarchyIsNeverReplaced) {
   const Path mesh = write_mesh("a.ply");
   fs::create_directory(output());
   write_text(output() / "diary.txt", "precious");
-  EXPECT_EQ(run(update(mesh)).code, kExists);
+  const Outcome foreign = run(update(mesh));
+  EXPECT_EQ(foreign.code, kExists);
+  EXPECT_THAT(foreign.messages,
+              AllOf(HasSubstr("is never replaced: move it away"), Not(HasSubstr("--force"))));
   EXPECT_EQ(text_of(output() / "diary.txt"), "precious");
   fs::remove_all(output());
   write_text(output(), "a file");

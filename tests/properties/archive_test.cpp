@@ -219,7 +219,7 @@ TEST_F(PackedTest, ReplacesAnArchiveOfAHierarchyAndNothingElse) {
   files_.put("/models/notes.txt", "mine");
   EXPECT_THAT(refusal(ErrorCode::exists,
                       [&] { build("/models/notes.txt", storage::Container::archive, true); }),
-              HasSubstr("is not the archive of a hierarchy, so --force does not replace it"));
+              HasSubstr("is not the archive of a hierarchy, and is never replaced: move it away"));
   EXPECT_EQ(files_.content("/models/notes.txt"), "mine");
 }
 
