@@ -233,7 +233,8 @@ BuildReport make_report(const storage::HierarchyReader& made, const BuildOutcome
         counted(outcome.copies_between_tiles, "vertices"));
   report.text += notes_text(made, context.config, outcome.has_area);
   report.account = account_text(source, report.stats);
-  report.input = note_of(outcome.input, source.checksum, context.config, context.files);
+  report.input = note_of(outcome.input, source.checksum, context.config, context.files,
+                         [&] { context.cancel.check(); });
   return report;
 }
 

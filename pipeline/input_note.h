@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 
 #include <nlohmann/json.hpp>
 
@@ -32,8 +33,11 @@ class NotePaths {
 /// files that the config names. Equal to itself once it was written and read.
 nlohmann::ordered_json build_key(const config::Config& config, const NotePaths& paths);
 
-/// Returns the note on an input. `content`: the hierarchy's `source.checksum`.
+/// Returns the note on an input; archives are read once more, for their checksums. `content`: the
+/// hierarchy's `source.checksum`. `check` is called before each read and may throw. Throws
+/// Error(io).
 storage::InputNote note_of(const importing::InputRecord& input, std::uint64_t content,
-                           const config::Config& config, storage::FileSystem& files);
+                           const config::Config& config, storage::FileSystem& files,
+                           const std::function<void()>& check);
 
 }  // namespace meshhier::pipeline

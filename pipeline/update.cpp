@@ -10,6 +10,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/noted_files.h"
 #include "storage/format/work_directory.h"
+#include "storage/io/json_text.h"
 
 #include <optional>
 #include <set>
@@ -55,6 +56,11 @@ void keep_note(const fs::path& path, const storage::InputNote& note,
   } catch (const Error& error) {
     environment.progress.warn(error.what());
   }
+}
+
+/// Returns the name of a file as manifests have it: bytes that are no UTF-8 become U+FFFD.
+std::string name_in_manifest(const std::string& name) {
+  return storage::parse_ordered_json_text(storage::json_text(Json(name))).get<std::string>();
 }
 
 /// Returns how the manifest's program and config differ from those of a build; empty if they do
@@ -103,12 +109,14 @@ class InputQuestion {
     const importing::InputFiles& files = input_.files();
     if (!source.files.empty() || input_.needs_import())
       return "nothing is noted of its input";
-    if (source.file_name != files.name() || source.file_bytes != files.bytes())
+    if (source.file_name != name_in_manifest(files.name()) || source.file_bytes != files.bytes())
       return plain_text(files.name(), kLongestTold) + " is not what it was";
     const std::uint64_t checksum = input_.checksum(environment_.cancel);
     if (checksum != source.checksum)
       return plain_text(files.name(), kLongestTold) + " is not what it was";
-    keep_note(path, note_of(input_.record(checksum), checksum, config_, files.system()),
+    keep_note(path,
+              note_of(input_.record(checksum), checksum, config_, files.system(),
+                      [&] { environment_.cancel.check(); }),
               environment_);
     return "";
   }

@@ -302,6 +302,24 @@ std::string town(const std::string& x) {
                         {"a.gltf", gltf, 8}});
 }
 
+TEST_F(CommandLine, AnUpdateReadsATouchedArchiveAndBuildsAChangedOne) {
+  const Path archive = work() / "a.3tz";
+  write_text(archive, town("0"));
+  const auto is_up_to_date = [&] {
+    const Outcome outcome =
+        run({"build", archive.string(), "-o", hierarchy(), "--update", "--set", "preview=false"});
+    EXPECT_EQ(outcome.code, 0) << outcome.messages;
+    return outcome.out.ends_with(" is up to date\n");
+  };
+  EXPECT_FALSE(is_up_to_date());
+  write_text(archive, town("0"));
+  EXPECT_TRUE(is_up_to_date()) << "written anew with what it held";
+  EXPECT_TRUE(is_up_to_date());
+  write_text(archive, town("5"));
+  EXPECT_FALSE(is_up_to_date());
+  EXPECT_TRUE(is_up_to_date());
+}
+
 TEST_F(CommandLine, SeveralArchivesAreJoinedAndAHierarchyIsTheOutput) {
   write_text(work() / "a.3tz", town("0"));
   write_text(work() / "b.3tz", town("5"));
