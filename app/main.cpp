@@ -240,6 +240,18 @@ int execute_guarded(const Invocation& invocation, const execution::CancelToken& 
   std::_Exit(exit_code(ErrorCode::internal));
 }
 
+/// Returns the arguments as the parser takes them, the last one first. What stands behind "--" is a
+/// file, which the parser would take for an option if one of several values stands before.
+std::vector<std::string> words_of(std::span<char* const> arguments) {
+  std::vector<std::string> words(arguments.begin() + 1, arguments.end());
+  for (auto word = std::find(words.begin(), words.end(), "--"); word != words.end(); ++word) {
+    if (word->starts_with('-') && *word != "-" && *word != "--")
+      word->insert(0, "./");
+  }
+  std::ranges::reverse(words);
+  return words;
+}
+
 int run(int argc, char** argv, const execution::CancelToken& cancel) {
   Invocation invocation;
   if (argc > 0)
@@ -271,10 +283,10 @@ int run(int argc, char** argv, const execution::CancelToken& cancel) {
   const bool as_json = asks_for_json({argv, static_cast<std::size_t>(argc)});
   if (argc > 1 && is_unknown_command(argv[1], names))
     return report_mistake(unknown_command(argv[1], parser), as_json);
-  if (argc == 1)
+  if (argc <= 1)
     return report_mistake("a command is missing: " + listed_commands(parser), as_json);
   try {
-    parser.parse(argc, argv);
+    parser.parse(words_of({argv, static_cast<std::size_t>(argc)}));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0)
       return report_mistake(error.what(), as_json);

@@ -279,6 +279,15 @@ TEST_F(CommandLine, AFolderWithoutANameNeedsAnOutput) {
     EXPECT_THAT(run({"build", folder}).messages, HasSubstr("name the output by -o")) << folder;
 }
 
+TEST_F(CommandLine, WhatStandsBehindTwoDashesIsAFileWhateverStandsBefore) {
+  write_mesh("-a.ply");
+  const Path before = std::filesystem::current_path();
+  std::filesystem::current_path(work());
+  EXPECT_EQ(run({"build", "-o", "a.hier", "--set", "preview=false", "--", "-a.ply"}).code, 0);
+  EXPECT_EQ(run({"build", "-o", "a.hier", "--force", "--", "-a.ply"}).code, 0);
+  std::filesystem::current_path(before);
+}
+
 TEST_F(CommandLine, ADamagedManifestIsToldWithoutTheParsersName) {
   build();
   write_text(work() / "a.hier" / "hierarchy.json", "{\"a\": ]");
