@@ -215,7 +215,9 @@ void add_serve_command(CLI::App& parser, Invocation& invocation) {
   add_service_options(*command, *arguments);
   CLI::Option* verbose =
       command->add_flag("--verbose", arguments->verbose, "Print a line for each request");
-  command->add_flag("--quiet", arguments->quiet, "Print nothing but the URL, errors and what is missing")
+  command
+      ->add_flag("--quiet", arguments->quiet,
+                 "Print nothing but the URL, errors and what is missing")
       ->excludes(verbose);
   command->footer(kServeFooter);
   command->callback([arguments, command, &invocation] {
