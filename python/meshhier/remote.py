@@ -301,6 +301,7 @@ class RemoteFolder:
         return RemoteFolder, (self._web,)
 
     def read(self, name: str) -> bytes:
+        self.require_open()
         if name != "hierarchy.json":
             return self._blocks.get(name, [0], lambda *_: [self._fetch(name)])
         manifest, self._manifest = self._manifest, None

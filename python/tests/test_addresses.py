@@ -7,8 +7,10 @@ import base64
 import os
 import pickle
 import shutil
+import signal
 import subprocess
 import threading
+import time
 from pathlib import Path
 from typing import Any, Iterator, Optional
 
@@ -121,6 +123,31 @@ def test_what_fails_ahead_is_told_by_who_wants_it(host: Host) -> None:
         assert [next(parts).tiles for _ in range(3)] == [[node] for node in web.tree.level(web.levels - 1)[:3]]
         with pytest.raises(meshhier.NetworkError, match=f"{last}: .*403"):
             next(parts)
+
+
+@pytest.mark.parametrize("name", ["a.hier", "a.3tz"])
+def test_what_was_kept_is_closed_too(name: str, host: Host) -> None:
+    with meshhier.open(f"{host.address}/{name}") as web:
+        web.read_tile((0, 0))
+    with pytest.raises(meshhier.UsageError, match="closed"):
+        web.read_tile((0, 0))
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+@pytest.mark.parametrize("name", ["a.hier", "a.3tz"])
+def test_a_forked_process_waits_for_no_thread_of_its_parent(name: str, host: Host) -> None:
+    with meshhier.open(f"{host.address}/{name}") as web:
+        asked = len(host.requests)
+        host.reply = slow(1)
+        finest = web.tree.level(web.levels - 1)
+        web._expect(np.array([web._index.row(node) for node in finest[1:3]]))
+        while len(host.requests) == asked:  # now they are on their way
+            time.sleep(0.01)
+        child = os.fork()
+        if child == 0:
+            signal.alarm(30)
+            os._exit(0 if [web.read_tile(node).node for node in finest[1:3]] == finest[1:3] else 1)
+        assert os.waitpid(child, 0)[1] == 0
 
 
 def test_nothing_comes_ahead_that_nobody_can_keep(host: Host, root: Path) -> None:
