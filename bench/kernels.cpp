@@ -1,11 +1,15 @@
-// Kernels one by one, in triangles or vertices a second of CPU time: what a hierarchy's tiles cost.
+// Kernels one by one, in triangles, vertices or questions a second of CPU time: what a hierarchy's
+// tiles cost.
 #include "bench/sample_tiles.h"
 #include "cluster_simplify/contraction.h"
 #include "cluster_simplify/quadric.h"
+#include "compare/triangle_search.h"
 #include "partition/top_tree.h"
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -156,6 +160,55 @@ void build_quadrics(benchmark::State& state) {
   count_triangles(state, static_cast<std::int64_t>(mesh.interior.size()));
 }
 BENCHMARK(build_quadrics);
+
+std::vector<SurfaceTriangle> sample_triangles() {
+  const TileMesh& mesh = joined_tile().mesh;
+  std::vector<SurfaceTriangle> triangles;
+  for (const TileTriangle& t : mesh.interior) {
+    const auto at = [&](std::size_t k) { return mesh.vertices.positions[raw(t[k])]; };
+    triangles.push_back({at(0), at(1), at(2)});
+  }
+  return triangles;
+}
+
+/// Makes the tree that points and rays are looked up in.
+void search_build(benchmark::State& state) {
+  const std::vector<SurfaceTriangle> triangles = sample_triangles();
+  for (auto _ : state)
+    benchmark::DoNotOptimize(comparing::TriangleSearch(triangles));
+  count_triangles(state, static_cast<std::int64_t>(triangles.size()));
+}
+BENCHMARK(search_build)->Name("search/build")->Unit(benchmark::kMillisecond);
+
+/// Asks about all triangles: ask(search, middle of the triangle, a vector of unit length).
+template <class Ask>
+void search_triangles(benchmark::State& state, const Ask& ask) {
+  const std::vector<SurfaceTriangle> triangles = sample_triangles();
+  const comparing::TriangleSearch search(triangles);
+  for (auto _ : state) {
+    double angle = 0;
+    for (const auto& [a, b, c] : triangles) {
+      angle += 1;  // radian: all around
+      ask(search, to_double(a + b + c) * (1.0 / 3), {std::cos(angle), 0, std::sin(angle)});
+    }
+  }
+  count_triangles(state, static_cast<std::int64_t>(triangles.size()));
+}
+
+void search_points(benchmark::State& state) {
+  search_triangles(state, [](const auto& search, Vec3d middle, Vec3d way) {
+    benchmark::DoNotOptimize(
+        search.first_nearest(middle + way * 0.01, std::numeric_limits<double>::infinity(), 0));
+  });
+}
+BENCHMARK(search_points)->Name("search/points")->Unit(benchmark::kMillisecond);
+
+void search_rays(benchmark::State& state) {
+  search_triangles(state, [](const auto& search, Vec3d middle, Vec3d way) {
+    benchmark::DoNotOptimize(search.first_hit(Ray(middle - way * 3, way), comparing::kBehindAll));
+  });
+}
+BENCHMARK(search_rays)->Name("search/rays")->Unit(benchmark::kMillisecond);
 
 void register_contractions() {
   for (const NamedContraction& contraction : kContractions)
