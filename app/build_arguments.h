@@ -14,9 +14,10 @@ struct BuildArguments {
   std::string stats;       ///< file for the account; empty: none
   std::string input_note;  ///< file for the names of the files that were read; empty: none
   bool force = false;
-  bool update = false;  ///< builds only what is not of this input, config and program
-  bool restart = false;
-  bool verbose = false;  ///< also the account
+  bool update = false;         ///< builds only what is not of this input, config and program
+  bool restart = false;        ///< throws away what a stopped build left
+  bool restart_other = false;  ///< does so if that is of another config or input
+  bool verbose = false;        ///< also the account
   bool no_links = false;
   std::string within;  ///< the folder that holds all input; empty: anywhere
   bool each = false;   ///< each of `named` becomes a hierarchy of its own

@@ -1,30 +1,24 @@
 #include "app/build_batch.h"
 
+#include "app/batch_items.h"
+#include "app/batch_plan.h"
 #include "base/error.h"
-#include "base/named_value.h"
-#include "base/plain_text.h"
-#include "config/config.h"
-#include "config/named_files.h"
 #include "execution/size_text.h"
-#include "pipeline/plan/build_plan.h"
 #include "server/build_process.h"
 #include "storage/io/json_text.h"
 #include "storage/io/own_program.h"
-#include "storage/io/paths.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <ostream>
-#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -36,50 +30,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kLongestName = 4096;
-
-enum class BatchResult { not_begun, done, up_to_date, failed, stopped };
-constexpr std::array kBatchResults{
-    NamedValue{"not begun", BatchResult::not_begun}, NamedValue{"done", BatchResult::done},
-    NamedValue{"up to date", BatchResult::up_to_date}, NamedValue{"failed", BatchResult::failed},
-    NamedValue{"stopped", BatchResult::stopped}};
-
-/// A build of the batch.
-struct BatchItem {
-  std::string input;
-  fs::path output{};  ///< empty: not known, as the input is no mesh
-  std::uint64_t memory_budget = 0;
-  std::size_t threads = 1;
-  BatchResult result = BatchResult::not_begun;
-  int code = 0;
-  std::string message{};
-  double seconds = 0;
-
-  /// The name that it is told by.
-  std::string name() const { return output.empty() ? input : output.string(); }
-};
-
-void set_failed(BatchItem& item, int code, const std::string& message) {
-  item.result = BatchResult::failed;
-  item.code = code;
-  item.message = message;
-}
-
-/// Throws Error(usage) for settings that are none, or are for one build alone.
-void check_settings(const BuildArguments& arguments) {
-  std::vector<std::string> settings = arguments.settings;
-  for (const std::string& setting : settings) {
-    if (setting.starts_with("input=") || setting.starts_with("output="))
-      throw Error(
-          ErrorCode::usage,
-          fmt::format("--set {}: with --each, inputs are the FILEs, and -o names the folder "
-                      "of all outputs",
-                      plain_text(setting, kLongestName)));
-  }
-  settings.insert(settings.end(), {"input=mesh.ply", "output=mesh.hier"});
-  config::parse_config("{}", {"--set", {}}, settings);
-}
-
 /// Throws Error(usage) if the outputs cannot lie there, else makes the folder.
 void make_folder(const fs::path& folder, storage::FileSystem& files) {
   if (folder.empty())
@@ -87,53 +37,6 @@ void make_folder(const fs::path& folder, storage::FileSystem& files) {
   if (files.exists(folder) && !files.is_directory(folder))
     throw Error(ErrorCode::usage, folder.string() + ": with --each, -o names a folder");
   files.make_directories(folder);
-}
-
-/// Whether a shell would have replaced the word by names of files, had there been any.
-bool is_pattern(const std::string& word) {
-  return word.find_first_of("*?[") != std::string::npos;
-}
-
-BatchItem plan_item(const std::string& input, const BuildArguments& arguments,
-                    storage::FileSystem& files) {
-  BatchItem item{.input = input};
-  try {
-    const config::Config config =
-        config::read_named(files, {input}, config::CommandLine(arguments.settings));
-    const fs::path folder = arguments.output;
-    item.output = folder.empty() ? config.output : folder / config.output.filename();
-    item.memory_budget = pipeline::memory_budget(config);
-    item.threads = pipeline::thread_count(config);
-  } catch (const Error& error) {
-    const bool is_nothing = is_pattern(input) && !files.exists(input);
-    set_failed(item, static_cast<int>(error.code()),
-               is_nothing ? input + ": no file has a name like that" : error.what());
-  }
-  return item;
-}
-
-/// Returns a build for each input, those that are named twice once.
-std::vector<BatchItem> plan_items(const BuildArguments& arguments, storage::FileSystem& files) {
-  std::vector<BatchItem> items;
-  std::set<fs::path> inputs;
-  std::map<fs::path, std::string> makers;
-  for (const std::string& input : arguments.named) {
-    const fs::path normal = fs::path(input).lexically_normal();
-    if (!inputs.insert(storage::without_last_slash(normal)).second)
-      continue;
-    items.push_back(plan_item(input, arguments, files));
-    const fs::path& output = items.back().output;
-    if (output.empty())
-      continue;
-    const auto [other, is_new] = makers.emplace(files.canonical(output), input);
-    if (!is_new)
-      throw Error(ErrorCode::usage,
-                  fmt::format("{} and {} would both become {}: rename one, or build them by two "
-                              "commands into two folders (of a tileset.json name the folder)",
-                              plain_text(other->second, kLongestName),
-                              plain_text(input, kLongestName), output.string()));
-  }
-  return items;
 }
 
 /// Returns a path as a word that is no option.
@@ -157,10 +60,10 @@ class Batch {
     progress_->stage("build", items.size(), "models");
     std::vector<BatchItem*> all;
     for (BatchItem& item : items) {
-      if (item.result == BatchResult::failed)
-        tell_end(item);
-      else
+      if (item.result == BatchResult::not_begun)
         all.push_back(&item);
+      else
+        tell_end(item);
     }
     run(all, std::min<std::size_t>(arguments_.jobs, std::max<std::size_t>(all.size(), 1)));
     // Beside others there was too little memory or disk.
@@ -293,46 +196,23 @@ class Batch {
   std::mutex mutex_;
 };
 
-/// Returns a line on a build, and on why it failed.
-std::string row_text(const BatchItem& item) {
-  std::string text = fmt::format("{:<10}  {}", name_in(kBatchResults, item.result),
-                                 plain_text(item.name(), kLongestName));
-  if (item.result == BatchResult::done)
-    text += ", in " + execution::duration_text(item.seconds);
-  if (item.result == BatchResult::failed)
-    text += fmt::format(" ({}): {}", item.code, plain_text(item.message, kLongestName));
-  return text + '\n';
-}
-
-std::string summary_text(const std::vector<BatchItem>& items) {
-  std::string text, counts;
-  for (const BatchItem& item : items)
-    text += row_text(item);
-  for (const auto& [name, result] : kBatchResults) {
-    const auto count = std::ranges::count(items, result, &BatchItem::result);
-    if (count > 0)
-      counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, name);
-  }
-  return text + counted(items.size(), "models") + ": " + counts + '\n';
+std::string seconds_text(const BatchItem& item) {
+  return item.result == BatchResult::done ? ", in " + execution::duration_text(item.seconds) : "";
 }
 
 }  // namespace
 
 int run_batch(const BuildArguments& arguments, execution::ProgressMode mode,
               const Environment& environment) {
-  check_settings(arguments);
   std::vector<BatchItem> items = plan_items(arguments, environment.files);
+  if (arguments.dry_run)
+    return plan_batch(arguments, items, mode, environment);
   make_folder(arguments.output, environment.files);
   Batch(arguments, mode, environment).run(items);
-  environment.out << summary_text(items) << std::flush;
+  environment.out << summary_text(items, seconds_text) << std::flush;
   if (environment.cancel.cancelled())
     throw Error(ErrorCode::interrupted, "interrupted; the same command goes on where it was");
-  std::vector<int> failures;
-  for (const BatchItem& item : items) {
-    if (item.code != 0)
-      failures.push_back(item.code);
-  }
-  return server::exit_code_of(failures);
+  return server::exit_code_of(failures_of(items));
 }
 
 }  // namespace meshhier::app

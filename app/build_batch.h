@@ -7,10 +7,10 @@
 
 namespace meshhier::app {
 
-/// Builds a hierarchy of each of arguments.named, several at once, and tells of all at the end. The
-/// memory budget and the threads of each are divided by their number. Returns the exit code: 0,
-/// that of all builds that failed if they have the same, else server::kSeveralReasons. Throws
-/// Error(usage) if two would have one output; Error(interrupted).
+/// Builds a hierarchy of each of arguments.named, several at once, and tells of all at the end; or
+/// tells what that would take. The memory budget and the threads of each are divided by their
+/// number. Returns the exit code: 0, that of all builds that failed if they have the same, else
+/// server::kSeveralReasons. Throws Error(usage) if two would have one output; Error(interrupted).
 int run_batch(const BuildArguments& arguments, execution::ProgressMode mode,
               const Environment& environment);
 

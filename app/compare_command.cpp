@@ -78,7 +78,7 @@ class DifferenceHierarchy {
   std::string build(const comparing::SurfaceComparison& comparison, execution::Progress& progress,
                     Environment& environment) {
     config_.view = comparing::view_of(comparison);
-    pipeline::BuildOptions options{.force = replaces_, .restart = true};
+    pipeline::BuildOptions options{.force = replaces_, .restart = pipeline::Restart::always};
     options.leaves_work = false;  // nobody could go on with it
     return pipeline::build_hierarchy(config_, options,
                                      {environment.files, progress, environment.cancel})

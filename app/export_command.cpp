@@ -75,7 +75,7 @@ std::string make_hierarchy(const HierarchyPlace& place, const exporting::ExportO
                            execution::Progress& progress, Environment& environment) {
   const exporting::PieceMesh piece(place.files(), place.path(), options, environment.files,
                                    progress, environment.cancel);
-  pipeline::BuildOptions build{.force = options.replace, .restart = true};
+  pipeline::BuildOptions build{.force = options.replace, .restart = pipeline::Restart::always};
   build.leaves_work = false;  // nobody could go on with it
   const pipeline::BuildReport report = pipeline::build_hierarchy(
       piece.config(), build, {environment.files, progress, environment.cancel});

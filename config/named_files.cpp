@@ -76,8 +76,8 @@ bool is_config(storage::FileSystem& files, const fs::path& path) {
 /// Whether a path is that of a hierarchy, there or to be: a 3D Tiles archive of others is a mesh.
 bool is_output(storage::FileSystem& files, const fs::path& path) {
   const std::string ending = path.extension().string();
-  return ending == ".hier" || (ending == ".3tz" && (!mesh_io::is_container(files, path) ||
-                                                    files.exists(path / "hierarchy.json")));
+  return ending == ".hier" ||
+         (ending == ".3tz" && (!mesh_io::is_container(files, path) || is_hierarchy(files, path)));
 }
 
 /// Throws if the output stands behind the meshes, as other programs take it.
@@ -89,6 +89,10 @@ void require_no_output_among(storage::FileSystem& files, const std::vector<fs::p
 }
 
 }  // namespace
+
+bool is_hierarchy(storage::FileSystem& files, const fs::path& path) {
+  return files.input().kind(path / "hierarchy.json") == storage::FileKind::regular;
+}
 
 Config load_named(storage::FileSystem& files, const std::vector<fs::path>& named,
                   CommandLine words) {

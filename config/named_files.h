@@ -9,6 +9,9 @@
 
 namespace meshhier::config {
 
+/// Whether there is a hierarchy: a directory, or the archive of one.
+bool is_hierarchy(storage::FileSystem& files, const std::filesystem::path& path);
+
 /// Returns the config of a build that is given these files; without any, `words` must say all.
 /// Requires words.meshes to be empty.
 ///

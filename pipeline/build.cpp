@@ -25,7 +25,8 @@ namespace {
 
 /// Does all stages but import, then gives the hierarchy its name.
 BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work,
-                       storage::MemoryPool& pool, StageMeter& meter, const StageContext& context);
+                       storage::MemoryPool& pool, StageMeter& meter, Restart restart,
+                       const StageContext& context);
 
 /// Makes all files of the hierarchy in `directory`: does all rows of the table (stages.cpp) between
 /// reading the input and packing the output, as far as the journal does not have their work.
@@ -81,7 +82,7 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   }
 
   storage::WorkDirectory work(files, output, options.force);
-  if (options.restart)
+  if (options.restart == Restart::always)
     work.clear();
   claim_room(work, input, plan, config, files, pool.scratch_use());
   const DropAtEnd drop{input};
@@ -90,7 +91,8 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
     plan = import_and_plan(input, work, pool, config, {files, meter, environment.cancel});
   check_apart(input.files().companions(), config, options.others, files);
   try {
-    return run_stages(input, work, pool, meter, {config, *plan, files, meter, environment.cancel});
+    return run_stages(input, work, pool, meter, options.restart,
+                      {config, *plan, files, meter, environment.cancel});
   } catch (const Error& error) {
     if (error.code() == ErrorCode::input || !options.leaves_work)
       work.keep(false);  // nothing to go on with
@@ -121,14 +123,15 @@ std::uint64_t written_for_good(storage::FileSystem& files, const storage::Scratc
 }
 
 BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work,
-                       storage::MemoryPool& pool, StageMeter& meter, const StageContext& context) {
+                       storage::MemoryPool& pool, StageMeter& meter, Restart restart,
+                       const StageContext& context) {
   storage::FileSystem& files = context.files;
   storage::ScratchUse& use = pool.scratch_use();
   pool.set_capacity(context.memory().pool_bytes);
   meter.expect(wall_times(context.plan));
   if (files.exists(storage::journal_path(work.path())))
     meter.stage("resume", 0, "entries");
-  const OpenWorkshop open = open_workshop(work, input, pool, context);
+  const OpenWorkshop open = open_workshop(work, input, pool, restart, context);
   Workshop& workshop = *open.workshop;
   if (!workshop.journal.source()) {
     if (!can_be_read(input, context.config))

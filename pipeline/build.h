@@ -3,6 +3,7 @@
 
 #include "config/config.h"
 #include "pipeline/build_report.h"
+#include "pipeline/journal/restart.h"
 #include "pipeline/plan/stage_context.h"
 
 #include <filesystem>
@@ -11,8 +12,8 @@
 namespace meshhier::pipeline {
 
 struct BuildOptions {
-  bool force = false;    ///< replace an existing output
-  bool restart = false;  ///< throw away what an earlier build of the output left
+  bool force = false;  ///< replace an existing output
+  Restart restart = Restart::never;
   std::vector<std::filesystem::path> others{};  ///< files that its caller writes, besides
   bool leaves_work = true;  ///< a stopped build leaves what the next one goes on with
 };
@@ -28,8 +29,8 @@ struct BuildOptions {
 /// As soon as the triangles are distributed, the work that is done is noted on disk, beside the
 /// output. If a build is stopped after that, by Error(interrupted), Error(io) or a kill, it stays
 /// there, and the next build of the same input with a config of the same result goes on with it;
-/// with another result it is refused with Error(other_work), and with Error(locked) while another
-/// process builds the output. Else nothing is left behind.
+/// with another result it is refused with Error(other_work) unless `restart` says otherwise, and
+/// with Error(locked) while another process builds the output. Else nothing is left behind.
 BuildReport build_hierarchy(const config::Config& config, const BuildOptions& options,
                             BuildEnvironment environment);
 

@@ -112,6 +112,12 @@ std::string placement_of(const config::Config& config, importing::MeshInput& inp
   return transform ? config::placement_text(config, bounds, *transform) : "";
 }
 
+std::uint64_t bytes_there(const std::filesystem::path& path, storage::FileSystem& files) {
+  if (files.is_directory(path))
+    return storage::bytes_below(files, path);
+  return files.exists(path) ? files.identity(path).bytes : 0;
+}
+
 }  // namespace
 
 TimeEstimate estimate_time(const BuildPlan& plan, std::uint64_t input_bytes) {
@@ -157,6 +163,8 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
   estimate.memory_budget_bytes = memory_budget(config);
   estimate.least_budget_bytes = least_budget(memory_costs(estimate.plan.job));
   estimate.free_bytes = files.free_bytes(estimate.disk);
+  estimate.replaced_bytes = bytes_there(config.output, files);
+  estimate.left_bytes = bytes_there(storage::work_path(config.output), files);
   return estimate;
 }
 

@@ -37,6 +37,8 @@ struct BuildEstimate {
   std::uint64_t least_budget_bytes = 0;
   std::filesystem::path disk;  ///< a directory on the disk that would hold the output
   std::uint64_t free_bytes = 0;
+  std::uint64_t replaced_bytes = 0;  ///< of the output that is there
+  std::uint64_t left_bytes = 0;      ///< of what an earlier build of it has left
   mesh_io::InputPaths input;
   std::filesystem::path output;
   std::string placement;  ///< as config::placement_text() has it

@@ -21,7 +21,6 @@ constexpr std::size_t kMostLeftOut = 100;
 
 constexpr int kExists = static_cast<int>(ErrorCode::exists);
 constexpr int kLocked = static_cast<int>(ErrorCode::locked);
-constexpr int kOtherWork = static_cast<int>(ErrorCode::other_work);
 
 /// Returns a text without the path of a directory: nobody on the network needs to know where things
 /// lie on this machine.
@@ -331,16 +330,12 @@ void Watch::build(const std::string& name, const BuildTarget& target) {
   }
   tell_(LogLevel::info, fmt::format("{}: building {}", name, target.name));
   const auto start = Clock::now();
-  BuildEnd outcome = run_build(name, target, false);
-  // A build that was begun with another config, or from another version of the file, is of no use
-  // any more.
-  if (outcome.code == kOtherWork && !is_stopping())
-    outcome = run_build(name, target, true);
+  const BuildEnd outcome = run_build(name, target);
   count(outcome, Clock::now() - start);
   settle(name, target, version, outcome);
 }
 
-BuildEnd Watch::run_build(const std::string& name, const BuildTarget& target, bool restart) {
+BuildEnd Watch::run_build(const std::string& name, const BuildTarget& target) {
   std::size_t told = 0;
   const auto heard = [&](std::string_view /*line*/, const Job& job) {
     for (; told < job.warnings.size(); ++told)
@@ -356,21 +351,21 @@ BuildEnd Watch::run_build(const std::string& name, const BuildTarget& target, bo
       look();
     return is_stopping();
   };
-  return run_build_process(words(name, target, restart),
-                           {.name = name, .state = JobState::building}, {heard, is_to_stop});
+  return run_build_process(words(name, target), {.name = name, .state = JobState::building},
+                           {heard, is_to_stop});
 }
 
-std::vector<std::string> Watch::words(const std::string& name, const BuildTarget& target,
-                                      bool restart) const {
+/// A build that was begun with another config, or from another version of the file, is of no use
+/// any more.
+std::vector<std::string> Watch::words(const std::string& name, const BuildTarget& target) const {
   std::vector<std::string> list{options_.program, "build"};
   if (!options_.config.empty())
     list.push_back(options_.config.string());
-  list.insert(list.end(), {"--progress", "json", "--within", options_.inbox.string(),
-                           "--input-note", notes_.path(target.name).string()});
+  list.insert(list.end(),
+              {"--restart-other", "--progress", "json", "--within", options_.inbox.string(),
+               "--input-note", notes_.path(target.name).string()});
   if (target.kind == BuildTarget::Kind::replace)
     list.emplace_back("--force");
-  if (restart)
-    list.emplace_back("--restart");
   list.insert(list.end(), {"--set", "input=" + (options_.inbox / name).string(),
                            "output=" + (options_.folder / target.name).string()});
   return list;

@@ -112,7 +112,7 @@ class Watch {
   void put_off(const std::string& name, const std::string& message, int code);
   void fail(const std::string& name, const std::string& message, int code);
   void build(const std::string& name, const BuildTarget& target);
-  BuildEnd run_build(const std::string& name, const BuildTarget& target, bool restart);
+  BuildEnd run_build(const std::string& name, const BuildTarget& target);
   void settle(const std::string& name, const BuildTarget& target, const InputVersion& version,
               const BuildEnd& outcome);
   void settle_built(const std::string& name, const BuildTarget& target, const InputVersion& version,
@@ -122,8 +122,7 @@ class Watch {
   void set_done(const std::string& name);
   void set_state(const std::string& name, State state, const std::string& message);
   std::string shown_text(const std::string& message) const;
-  std::vector<std::string> words(const std::string& name, const BuildTarget& target,
-                                 bool restart) const;
+  std::vector<std::string> words(const std::string& name, const BuildTarget& target) const;
   void sleep();
   bool is_stopping() const { return cancel_.cancelled(); }
 

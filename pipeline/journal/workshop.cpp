@@ -85,7 +85,8 @@ Workshop::Workshop(const std::filesystem::path& directory, const std::filesystem
                }) {}
 
 OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
-                           storage::MemoryPool& pool, const StageContext& context) {
+                           storage::MemoryPool& pool, Restart restart,
+                           const StageContext& context) {
   storage::FileSystem& files = context.files;
   const BuildIdentity identity = identity_of(context.config, input, context.plan);
   OpenWorkshop open;
@@ -103,11 +104,17 @@ OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& i
   if (is_new)
     work.clear();      // work that was not noted is of no use
   work.keep(!is_new);  // it may be of another build
-  make();
+  try {
+    make();
+  } catch (const Error& error) {
+    if (restart == Restart::never || error.code() != ErrorCode::other_work)
+      throw;
+    begin_anew("a stopped build of another config or input left its work: this one began anew");
+  }
   const BuildJournal& journal = open.workshop->journal;
   work.keep(journal.source().has_value());
   if (!journal.source()) {
-    if (!is_new)
+    if (!is_new && open.found.empty())
       begin_anew("");
   } else if (!journal.is_sound() || (journal.is_complete() && !is_whole(files, work.built()))) {
     begin_anew("what an earlier build left has been damaged: this one began anew");

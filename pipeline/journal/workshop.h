@@ -5,6 +5,7 @@
 #include "execution/cancel.h"
 #include "import/mesh_input.h"
 #include "pipeline/journal/build_journal.h"
+#include "pipeline/journal/restart.h"
 #include "pipeline/plan/stage_context.h"
 #include "pipeline/tiles/chunks.h"
 #include "pipeline/tiles/forest.h"
@@ -57,10 +58,11 @@ struct OpenWorkshop {
 };
 
 /// Opens the work of an earlier build of the same result in `work`, if it can be gone on with; else
-/// empties it. Reads all that was done, to check it, and all of `input` if it was touched since.
-/// Throws Error(other_work) as BuildJournal does, Error(io | interrupted).
+/// empties it, but keeps a mesh that was imported. Reads all that was done, to check it, and all of
+/// `input` if it was touched since. Throws Error(other_work) as BuildJournal does if `restart` is
+/// never, Error(io | interrupted).
 OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& input,
-                           storage::MemoryPool& pool, const StageContext& context);
+                           storage::MemoryPool& pool, Restart restart, const StageContext& context);
 
 /// Returns the description of the input that an earlier build has found.
 mesh_io::MeshDescription description_of(const EarlierBuild& build);

@@ -104,6 +104,8 @@ def build(
 
     Raises also StoppedBuildError.
     """
+    if dry_run and update:
+        raise UsageError("dry_run=True tells what a build would take, and update=True whether one is due: give one of them")
     given = locals()
     result = run("build", several(mesh), given, *output_words(output), *(["--json"] if dry_run else []), prints_data=dry_run)
     if dry_run:

@@ -163,6 +163,26 @@ TEST_F(Update, AHierarchyThatWasBuiltByHandIsKnownByReadingItsMesh) {
       << "nobody knows which library it lacked";
 }
 
+TEST_F(Update, AMeshWhoseNameIsNoUtf8IsKnownByReadingIt) {
+  const Path mesh = write_mesh("a\xff.ply");
+  ASSERT_EQ(
+      run({"build", mesh, "-o", output(), "--set", "preview=false", "storage.normals=smooth"}).code,
+      0);
+  EXPECT_TRUE(is_up_to_date(mesh, {"-o", output()}));
+  EXPECT_TRUE(is_up_to_date(mesh, {"-o", output()}));
+  const Path other = write_mesh("a\xfe.ply");
+  EXPECT_FALSE(is_up_to_date(other, {"-o", output()})) << "it has another name";
+}
+
+TEST_F(Update, ADryRunTellsWhatIsDue) {
+  const Path mesh = write_mesh("a.ply");
+  EXPECT_THAT(run(update(mesh, {"--dry-run"})).out, HasSubstr("hierarchy   1 partition"));
+  EXPECT_FALSE(fs::exists(output()));
+  EXPECT_FALSE(is_up_to_date(mesh));
+  EXPECT_EQ(run(update(mesh, {"--dry-run"})).out, output().string() + " is up to date\n");
+  EXPECT_THAT(run(update(mesh, {"--dry-run", "--json"})).out, HasSubstr("\"up_to_date\": true"));
+}
+
 TEST_F(Update, AViewThatWasGivenLaterStays) {
   const Path mesh = write_mesh("a.ply");
   EXPECT_FALSE(is_up_to_date(mesh));
@@ -260,6 +280,42 @@ TEST_F(Each, MakesAHierarchyOfEachFileAndTellsOfAll) {
   EXPECT_EQ(run(each({a, b})).code, kExists) << "both are there";
 }
 
+TEST_F(Each, ADryRunTellsOfAllAndOfTheirDiskAndBuildsNothing) {
+  const Path a = write_mesh("a.ply"), b = write_mesh("b.ply", 2499, 0.5);
+  ASSERT_EQ(run(each({a}, {"--update"})).code, 0);
+  const auto before = made();
+  const Outcome plan = run(each({a, b}, {"--update", "--dry-run"}));
+  EXPECT_EQ(plan.code, 0) << plan.messages << plan.out;
+  EXPECT_THAT(plan.out,
+              AllOf(HasSubstr("up to date  " + (models() / "a.hier").string() + "\n"),
+                    HasSubstr("to build    " + (models() / "b.hier").string() + ", about "),
+                    HasSubstr("2 models: 1 up to date, 1 to build\ndisk        "),
+                    HasSubstr(" free in " + models().string() + "\ntime        about ")));
+  EXPECT_EQ(made(), before);
+  const Outcome refused = run(each({a, b}, {"--dry-run", "--json", "--jobs", "2"}));
+  EXPECT_EQ(refused.code, kExists) << "as the builds";
+  const auto told = nlohmann::json::parse(refused.out);
+  EXPECT_EQ(told.at("models").at(0).at("code"), kExists);
+  EXPECT_EQ(told.at("models").at(1).at("result"), "to build");
+  EXPECT_GT(told.at("models").at(1).at("predicted_output_bytes"), 10'000);
+  EXPECT_EQ(told.at("disks").size(), 1U);
+  EXPECT_EQ(told.at("disks").at(0).at("predicted_room_bytes"),
+            told.at("models").at(1).at("predicted_room_bytes"));
+}
+
+TEST_F(Each, APatternThatMatchesWhatWasMadeMayBeRepeated) {
+  const Path a = write_mesh("a.ply");
+  const Arguments all{a, work() / "a.hier", work() / "b.3tz", models()};
+  ASSERT_EQ(run({"build", a, "-o", work() / "a.hier"}).code, 0);
+  ASSERT_EQ(run({"build", a, "-o", work() / "b.3tz"}).code, 0);
+  fs::create_directory(models());
+  const Outcome outcome = run(each(all, {"--update"}));
+  EXPECT_EQ(outcome.code, 0) << outcome.messages << outcome.out;
+  EXPECT_THAT(outcome.out, AllOf(HasSubstr("left out    " + (work() / "a.hier").string() + "\n"),
+                                 HasSubstr("4 models: 3 left out, 1 done\n")));
+  EXPECT_EQ(made(), (std::set<std::string>{".a.hier.meshhier-input", "a.hier"}));
+}
+
 TEST_F(Each, MeshesMayLieInTheFolderOfTheOutputs) {
   fs::create_directory(models());
   const Path a = write_mesh("models/a.ply");
@@ -280,6 +336,7 @@ TEST_F(Each, AFailureStopsNoOther) {
                     HasSubstr("text.txt (2): "),
                     HasSubstr("*.stl (4): " + (work() / "*.stl").string() + ": no file has a name"),
                     HasSubstr("5 models: 2 done, 3 failed\n")));
+  EXPECT_LT(outcome.out.find("b.hier"), outcome.out.find("broken.hier")) << "failures come last";
   const Outcome again = run(each({broken, a, b}, {"--update"}));
   EXPECT_EQ(again.code, kInput) << "the reason of all that failed";
   EXPECT_THAT(again.out, HasSubstr("3 models: 2 up to date, 1 failed\n"));
@@ -321,6 +378,8 @@ TEST_F(Each, TakesConfigsAndFoldersAndMakesArchives) {
 TEST_F(Each, WordsThatDoNotGoTogetherAreRefused) {
   const Path a = write_mesh("a.ply");
   EXPECT_EQ(run({"build", "--each"}).code, kUsage);
+  EXPECT_THAT(run({"build", "--each", a, ""}).messages,
+              HasSubstr("FILE: expected a name, found nothing"));
   EXPECT_EQ(run({"build", "--each", a, "--stats", work() / "s.json"}).code, kUsage);
   EXPECT_EQ(run({"build", a, "--jobs", "2"}).code, kUsage);
   EXPECT_EQ(run(each({a}, {"--set", "output=x.hier"})).code, kUsage);

@@ -274,6 +274,23 @@ TEST_F(Killed, SLOW_AnUpdateBeginsAnewWhereWorkTowardsAnotherResultWasLeft) {
   EXPECT_THAT(same.out, HasSubstr("went on"));
 }
 
+TEST_F(Killed, SLOW_AnUpdateImportsOnceWhereWorkTowardsAnotherResultWasLeft) {
+  write_mesh("a.ply");
+  const std::string config = write_config(R"(, "weld": true)");
+  leave_work();
+  // Textures decide what is imported: nothing of the work is of use.
+  const Outcome anew =
+      run({"build", config, "--set", "texture.use=false", "--update", "--progress", "json"});
+  EXPECT_EQ(anew.code, 0) << anew.messages;
+  EXPECT_THAT(anew.out, HasSubstr("this one began anew"));
+  const std::string stage = R"("event":"stage_start","stage":"import","done":0)";
+  const std::size_t first = anew.messages.find(stage);
+  ASSERT_NE(first, std::string::npos) << anew.messages;
+  const std::size_t ingest = anew.messages.find(R"("stage":"ingest")");
+  EXPECT_EQ(anew.messages.find(R"("stage":"import")", ingest), std::string::npos);
+  EXPECT_FALSE(has_work());
+}
+
 TEST_F(Killed, SLOW_AnInputThatIsAnotherMeanwhileIsReadAgain) {
   write_mesh("a.ply");
   write_config();
