@@ -6,7 +6,6 @@
 #include "server/folder_scan.h"
 #include "storage/format/archive_files.h"
 #include "storage/format/build_name.h"
-#include "storage/format/input_note.h"
 #include "storage/format/layout.h"
 #include "storage/format/manifest.h"
 #include "storage/format/sealed_json.h"
@@ -21,14 +20,10 @@
 namespace meshhier::server {
 namespace {
 
-/// A screenful of models. Each open archive holds 32 bytes a file of its own, and an open file.
-constexpr std::size_t kMostOpenArchives = 16;
-
 constexpr std::int64_t kNanoseconds = 1'000'000'000;  // a second has so many
 
 /// Clients may ask for names without end in a directory that cannot be read: each is a message.
 constexpr std::size_t kMostTold = 1000;
-constexpr std::size_t kMostNotes = 1000;
 constexpr std::size_t kMostNamedBytes = 200;  // bytes of a name in a message
 
 std::string name_of(const std::filesystem::path& path) {
@@ -72,7 +67,8 @@ Hierarchies::Hierarchies(std::shared_ptr<const storage::Folder> folder, Tell tel
     : folder_(std::move(folder)),
       tell_(std::move(tell)),
       pictures_(folder_),
-      descriptions_(folder_, [this](const std::string& message) { tell_once(message); }) {}
+      descriptions_(folder_, [this](const std::string& message) { tell_once(message); }),
+      warnings_(folder_) {}
 
 std::vector<Model> Hierarchies::list() {
   const FolderScan scan = scan_folder(*folder_);
@@ -85,7 +81,7 @@ std::vector<Model> Hierarchies::list() {
   for (const std::string& path : scan.hierarchies) {
     if (std::optional<Model> model = look_if_readable(path)) {
       model->has_story = has_story(path);
-      model->warnings = warnings_of(*model);
+      model->warnings = warnings_.of(*model);
       models.push_back(std::move(*model));
     }
   }
@@ -154,41 +150,6 @@ std::optional<PublishedFile> Hierarchies::open_picture(std::string_view path) {
   return picture ? std::optional(PublishedFile{std::move(picture)}) : std::nullopt;
 }
 
-/// Returns the warnings of a model's build. A note that cannot be read, or is damaged, tells
-/// nothing.
-std::vector<std::string> Hierarchies::warnings_of(const Model& model) {
-  try {
-    return noted_warnings(model);
-  } catch (const storage::Busy&) {
-    throw;
-  } catch (const Error&) {
-    return {};
-  }
-}
-
-/// Reads the warnings in a note. Only watched folders write notes, which tell of no other build.
-std::vector<std::string> Hierarchies::noted_warnings(const Model& model) {
-  const std::string name = storage::input_note_path(model.path).generic_string();
-  const auto note = model.path.empty() ? nullptr : folder_->open(name);
-  if (!note)
-    return {};
-  const storage::FileVersion version = note->version();
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = warned_.find(model.path);
-    if (found != warned_.end() && found->second.version == version)
-      return found->second.content == model.source_checksum ? found->second.warnings
-                                                            : std::vector<std::string>();
-  }
-  storage::InputNote read = storage::read_input_note(*note, name);
-  const Warned warned{version, read.content, std::move(read.warnings)};
-  const std::lock_guard lock(mutex_);
-  if (warned_.size() >= kMostNotes)
-    warned_.clear();
-  warned_[model.path] = warned;
-  return warned.content == model.source_checksum ? warned.warnings : std::vector<std::string>();
-}
-
 bool Hierarchies::has_story(const std::string& hierarchy) {
   try {
     return open_story(hierarchy) != nullptr;
@@ -234,7 +195,7 @@ std::optional<PublishedFile> Hierarchies::open_in(const std::string& hierarchy,
   const bool is_tile = storage::tile_of(name).has_value();
   if (is_archive_name(hierarchy)) {
     if (std::unique_ptr<storage::File> file = folder_->open(hierarchy)) {
-      const auto opened = archive(hierarchy, std::move(file));
+      const auto opened = archives_.get(hierarchy, std::move(file));
       const auto place = opened->find(name);
       if (!place)
         return std::nullopt;
@@ -295,7 +256,7 @@ std::optional<Model> Hierarchies::look_at_archive(const std::string& path) {
     return std::nullopt;
   const storage::FileVersion version = file->version();
   return remember(path, version, [&] {
-    const auto opened = archive(path, std::move(file));
+    const auto opened = archives_.get(path, std::move(file));
     const std::string name = storage::manifest_path({}).string();
     const auto place = opened->find(name);
     if (!place) {
@@ -343,27 +304,6 @@ std::optional<Model> Hierarchies::remember(const std::string& path,
   const std::lock_guard lock(mutex_);
   known_[path] = known;
   return known.model;
-}
-
-std::shared_ptr<const storage::Archive> Hierarchies::archive(const std::string& path,
-                                                             std::unique_ptr<storage::File> file) {
-  const storage::FileVersion version = file->version();
-  const auto is_this = [&](const OpenArchive& open) { return open.path == path; };
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = std::find_if(archives_.begin(), archives_.end(), is_this);
-    if (found != archives_.end() && found->version == version) {
-      archives_.splice(archives_.begin(), archives_, found);
-      return found->archive;
-    }
-  }
-  auto opened = std::make_shared<const storage::Archive>(std::move(file));
-  const std::lock_guard lock(mutex_);
-  archives_.remove_if(is_this);
-  archives_.push_front({path, version, opened});
-  if (archives_.size() > kMostOpenArchives)
-    archives_.pop_back();
-  return opened;
 }
 
 Model Hierarchies::model_of(const std::string& path, const storage::File& file) const {

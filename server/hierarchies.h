@@ -1,16 +1,16 @@
 // The hierarchies below a folder: which there are, and their files.
 #pragma once
 
+#include "server/build_warnings.h"
 #include "server/descriptions.h"
+#include "server/kept_archives.h"
 #include "server/model.h"
 #include "server/story_pictures.h"
-#include "storage/format/archive.h"
 #include "storage/io/file.h"
 #include "storage/io/folder.h"
 
 #include <cstdint>
 #include <functional>
-#include <list>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -63,17 +63,6 @@ class Hierarchies {
     storage::FileVersion version;
     std::optional<Model> model;  ///< none: it cannot be read
   };
-  /// The warnings of a hierarchy's build, as long as its note is this one.
-  struct Warned {
-    storage::FileVersion version;
-    std::uint64_t content = 0;  ///< identifies the hierarchy that it is about
-    std::vector<std::string> warnings;
-  };
-  struct OpenArchive {
-    std::string path;
-    storage::FileVersion version;
-    std::shared_ptr<const storage::Archive> archive;
-  };
   using Read = std::function<Model()>;
 
   std::optional<Model> look_if_readable(const std::string& path);
@@ -85,8 +74,6 @@ class Hierarchies {
   bool is_stream(const std::string& path);
   std::optional<Model> remember(const std::string& path, const storage::FileVersion& version,
                                 const Read& read);
-  std::shared_ptr<const storage::Archive> archive(const std::string& path,
-                                                  std::unique_ptr<storage::File> file);
   bool has_story(const std::string& hierarchy);
   /// Returns null if it has none. Throws Error(io).
   std::unique_ptr<storage::File> open_story(const std::string& hierarchy) const;
@@ -101,17 +88,15 @@ class Hierarchies {
   Model model_of(const std::string& path, const storage::File& manifest) const;
 
   void describe(std::vector<Model>& models);
-  std::vector<std::string> warnings_of(const Model& model);
-  std::vector<std::string> noted_warnings(const Model& model);
 
   std::shared_ptr<const storage::Folder> folder_;
   Tell tell_;
   StoryPictures pictures_;
   Descriptions descriptions_;
+  BuildWarnings warnings_;
+  KeptArchives archives_;
   std::mutex mutex_;  ///< guards all below
   std::map<std::string, Known> known_;
-  std::map<std::string, Warned> warned_;
-  std::list<OpenArchive> archives_;  ///< the one used last first
   std::set<std::string> told_;
 };
 

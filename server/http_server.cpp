@@ -5,15 +5,14 @@
 #include "server/connection.h"
 #include "server/connection_body.h"
 #include "server/connection_queue.h"
+#include "server/http_messages.h"
 #include "storage/io/open_files.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <exception>
-#include <optional>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -26,9 +25,6 @@
 
 namespace meshhier::server {
 namespace {
-
-/// A thread holds so much of a file.
-constexpr std::size_t kPieceBytes = 64 * 1024;
 
 /// Connections that the system keeps until we take them; the library asks for 5, and more than a
 /// handful of clients at once would wait a second for their next try. Linux grants 4096 at most.
@@ -53,90 +49,6 @@ ServerOptions fitted(ServerOptions options) {
   const std::size_t left = files - std::min(files, options.threads * kFilesOfThread);
   options.most_connections = std::min(options.most_connections, std::max(left, options.threads));
   return options;
-}
-
-std::optional<std::string> header(const httplib::Request& request, const char* name) {
-  if (request.get_header_value_count(name) != 1)
-    return std::nullopt;
-  return request.get_header_value(name);
-}
-
-/// Whether a body is announced. Heads that say it in two ways were refused before.
-bool announces_body(const httplib::Request& request) {
-  return request.has_header("Transfer-Encoding") ||
-         request.get_header_value("Content-Length").find_first_not_of('0') != std::string::npos;
-}
-
-/// Returns the origin; "" if there are several, which is nobody's origin.
-std::optional<std::string> origin_of(const httplib::Request& request) {
-  if (!request.has_header("Origin"))
-    return std::nullopt;
-  return header(request, "Origin").value_or("");
-}
-
-/// Whether a proxy says that it asks for somebody else.
-bool is_passed_on(const httplib::Request& request) {
-  constexpr std::array kProxyHeaders{"Forwarded", "Via", "X-Forwarded-For", "X-Real-IP"};
-  return std::ranges::any_of(kProxyHeaders,
-                             [&](const char* name) { return request.has_header(name); });
-}
-
-Request request_of(const httplib::Request& request, Body* body) {
-  return {request.method,
-          request.target,
-          header(request, "Host"),
-          header(request, "Accept-Encoding"),
-          header(request, "If-None-Match"),
-          header(request, "If-Range"),
-          header(request, "Range"),
-          origin_of(request),
-          header(request, "Authorization"),
-          header(request, "Content-Type"),
-          request.has_header("Content-Range"),
-          announces_body(request),
-          body,
-          request.remote_addr,
-          is_passed_on(request)};
-}
-
-/// Sends a file piece by piece. The library has no place for exceptions here: a file that cannot be
-/// read any more ends the connection, and the client misses bytes.
-httplib::ContentProvider sender_of(const FilePart& part) {
-  const auto buffer = std::make_shared<std::vector<std::byte>>();
-  return [part, buffer](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-    try {
-      buffer->resize(std::min(length, kPieceBytes));
-      part.file->read_exact(part.offset + offset, *buffer);
-      return sink.write(reinterpret_cast<const char*>(buffer->data()), buffer->size());
-    } catch (const std::exception&) {
-      return false;
-    }
-  };
-}
-
-httplib::ContentProvider sender_of(const std::string& text) {
-  return [text](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-    return sink.write(text.data() + offset, length);
-  };
-}
-
-/// Puts a reply into the library's. Bodies are always given as providers: others the library would
-/// compress at will.
-void put(const Reply& reply, httplib::Response& response) {
-  response.status = reply.status;
-  std::string type;
-  for (const auto& [name, value] : reply.headers) {
-    if (name == "Content-Type")
-      type = value;
-    else
-      response.set_header(name, value);
-  }
-  if (reply.body_bytes() > 0) {
-    response.set_content_provider(reply.body_bytes(), type,
-                                  reply.file ? sender_of(*reply.file) : sender_of(reply.text));
-  } else if (!type.empty()) {
-    response.set_header("Content-Type", type);
-  }
 }
 
 [[noreturn]] void refuse_port(const ServerOptions& options, int error) {
