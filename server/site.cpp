@@ -94,9 +94,10 @@ void forbid_keeping(Reply& reply) {
   reply.headers.emplace_back("Cache-Control", "no-store");
 }
 
-/// Whether the request was meant for this host. Host is there once, in HTTP/1.1.
+/// Whether the request was meant for this host. One that names none is of HTTP/1.0, as health
+/// checks of proxies are; browsers always name one.
 bool is_for_this_host(const Request& request) {
-  return request.host && is_loopback_name(*request.host);
+  return !request.host || is_loopback_name(*request.host);
 }
 
 }  // namespace
