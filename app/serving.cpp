@@ -110,11 +110,13 @@ server::UploadOptions upload_options(const ServeArguments& arguments, Environmen
   return options;
 }
 
-server::VitalsOptions vitals_options(const ServeArguments& arguments, Environment& environment) {
+server::VitalsOptions vitals_options(const ServeArguments& arguments,
+                                     std::shared_ptr<const storage::Folder> folder,
+                                     Environment& environment) {
   storage::FileSystem& files = environment.files;
   server::VitalsOptions options;
   options.readiness = {
-      .folder = files.canonical(arguments.folder),
+      .folder = std::move(folder),
       .inbox = arguments.inbox.empty() ? std::filesystem::path() : files.canonical(arguments.inbox),
       .takes_uploads = arguments.takes_uploads,
       .disk_floor = arguments.disk_floor};
@@ -198,10 +200,11 @@ class Service {
         }),
         warn_([this](const std::string& message) { tell_(server::LogLevel::warning, message); }),
         complain_([this](const std::string& message) { tell_(server::LogLevel::error, message); }),
+        folder_(storage::open_folder(arguments.folder)),
         vitals_(
-            vitals_options(arguments, environment), environment.files, [this] { return figures(); },
-            tell_),
-        hierarchies_(storage::open_folder(arguments.folder), warn_) {
+            vitals_options(arguments, folder_, environment), environment.files,
+            [this] { return figures(); }, tell_),
+        hierarchies_(folder_, warn_) {
     ViewerPlace viewer = find_viewer(environment.files, arguments.viewer);
     if (!viewer.folder)
       console_.print(server::LogLevel::warning, viewer.missing + ' ' + kServedWithoutPage);
@@ -277,6 +280,7 @@ class Service {
   Console console_;
   server::Watch::Tell tell_;
   server::Hierarchies::Tell warn_, complain_;
+  std::shared_ptr<const storage::Folder> folder_;
   server::Vitals vitals_;  ///< asks the others, but only for http_
   server::Hierarchies hierarchies_;
   std::optional<server::Site> site_;  ///< asks watch_ for jobs, but only for http_

@@ -12,6 +12,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// A server shows the folder that it opened when it began, whatever takes its place.
+std::string why_not_shown(const storage::Folder& folder) {
+  try {
+    folder.entries("");
+    return folder.is_in_place() ? ""
+                                : "it is not the one that was there at the start: start the server "
+                                  "again";
+  } catch (const Error&) {
+    return "it cannot be listed";
+  }
+}
+
 std::string why_not_readable(const fs::path& folder, storage::FileSystem& files) {
   try {
     files.children(folder);
@@ -32,7 +44,7 @@ std::string first_of(std::string reason, const std::string& next) {
 
 Check check_disk(const ReadinessOptions& options, storage::FileSystem& files) {
   try {
-    std::uint64_t free = files.free_bytes(options.folder);
+    std::uint64_t free = files.free_bytes(options.folder->path());
     if (options.takes_uploads)
       free = std::min(free, files.free_bytes(options.inbox));
     if (free >= options.disk_floor)
@@ -48,10 +60,10 @@ Check check_disk(const ReadinessOptions& options, storage::FileSystem& files) {
 }  // namespace
 
 std::vector<Check> check_readiness(const ReadinessOptions& options, storage::FileSystem& files) {
-  Check folder{"folder", why_not_readable(options.folder, files)};
+  Check folder{"folder", why_not_shown(*options.folder)};
   if (options.inbox.empty())
     return {folder};
-  folder.reason = first_of(folder.reason, why_not_writable(options.folder, files));
+  folder.reason = first_of(folder.reason, why_not_writable(options.folder->path(), files));
   Check inbox{"inbox", why_not_readable(options.inbox, files)};
   if (options.takes_uploads)
     inbox.reason = first_of(inbox.reason, why_not_writable(options.inbox, files));

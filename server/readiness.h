@@ -2,18 +2,20 @@
 #pragma once
 
 #include "storage/io/file.h"
+#include "storage/io/folder.h"
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace meshhier::server {
 
 struct ReadinessOptions {
-  std::filesystem::path folder{};  ///< the hierarchies'
-  std::filesystem::path inbox{};   ///< watched; empty: none is, and nothing is written
-  bool takes_uploads = false;      ///< into the inbox
+  std::shared_ptr<const storage::Folder> folder{};  ///< the hierarchies', as they are shown
+  std::filesystem::path inbox{};  ///< watched; empty: none is, and nothing is written
+  bool takes_uploads = false;     ///< into the inbox
   std::uint64_t disk_floor = std::uint64_t{1} << 30;  ///< bytes that must be free to write
 };
 

@@ -103,7 +103,7 @@ Reply Vitals::metrics(const Request& request) {
     } catch (const Error&) {  // it is told by /readyz
     }
   };
-  add_place("folder", options_.readiness.folder);
+  add_place("folder", options_.readiness.folder->path());
   if (!options_.readiness.inbox.empty())
     add_place("inbox", options_.readiness.inbox);
   return vital_reply(200, Exposition::kContentType, metrics_text(requests_, figures));

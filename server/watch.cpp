@@ -32,6 +32,9 @@ std::string without(std::string text, const std::string& directory) {
 }
 
 constexpr const char* kGrowing = "waits until the file no longer changes";
+constexpr const char* kMoved =
+    "waits, as the folder of hierarchies is not the one that was there at the start: start the "
+    "server again";
 
 }  // namespace
 
@@ -269,6 +272,8 @@ void Watch::handle(const std::string& name) {
     if (target.kind == BuildTarget::Kind::done)
       return set_done(name);
     check_target(target, name, options_.folder);
+    if (!folder_->is_in_place())  // what is built there would not be shown
+      return put_off(name, kMoved, static_cast<int>(ErrorCode::io));
     if (is_in_hand(target))
       return put_off(name, "waits for another build that is at work on " + target.name, kLocked);
     build(name, target);

@@ -40,6 +40,13 @@ class PosixFolder final : public Folder {
   PosixFolder(std::filesystem::path path, Descriptor descriptor)
       : Folder(std::move(path)), descriptor_(std::move(descriptor)) {}
 
+  bool is_in_place() const override {
+    struct stat own {
+    }, found{};
+    return ::fstat(descriptor_.number(), &own) == 0 && ::stat(path().c_str(), &found) == 0 &&
+           own.st_dev == found.st_dev && own.st_ino == found.st_ino;
+  }
+
   std::unique_ptr<File> open(std::string_view name) const override {
     Descriptor file = walk(name, O_RDONLY | O_NONBLOCK);
     if (file.number() < 0)

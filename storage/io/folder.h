@@ -28,6 +28,8 @@ class Folder {
   virtual ~Folder() = default;
 
   const std::filesystem::path& path() const { return path_; }
+  /// Whether path() still leads to this directory: another one may have been mounted or put there.
+  virtual bool is_in_place() const = 0;
 
   /// Opens a file for reading; null if there is no regular file of that name, or the name is not
   /// allowed. The file may outlive the folder. Throws Error(io).

@@ -22,6 +22,8 @@ class BusyFolder final : public storage::Folder {
   explicit BusyFolder(std::shared_ptr<const storage::Folder> real)
       : Folder(real->path()), real_(std::move(real)) {}
 
+  bool is_in_place() const override { return real_->is_in_place(); }
+
   /// So many calls are done as ever, then none; -1: all.
   mutable int calls_left = -1;
 
@@ -52,6 +54,7 @@ class RefusingFolder final : public storage::Folder {
   RefusingFolder(std::shared_ptr<const storage::Folder> real, std::set<std::string> refused)
       : Folder(real->path()), real_(std::move(real)), refused_(std::move(refused)) {}
 
+  bool is_in_place() const override { return real_->is_in_place(); }
   std::unique_ptr<storage::File> open(std::string_view name) const override {
     check(name);
     return real_->open(name);

@@ -37,7 +37,7 @@ class VitalsTest : public testing::Test {
   fs::path inbox() const { return directory_.path() / "inbox"; }
 
   Vitals make(ReadinessOptions readiness, std::string token = {}) {
-    readiness.folder = folder();
+    readiness.folder = storage::open_folder(folder());
     return Vitals(
         {std::move(readiness), std::move(token)}, files_, [this] { return figures_; },
         [this](LogLevel level, const std::string& message) {
@@ -86,6 +86,19 @@ TEST_F(VitalsTest, AFolderThatIsOnlyReadNeedsNoDisk) {
   EXPECT_THAT(failing(vitals), IsEmpty());
   fs::remove(folder());
   EXPECT_THAT(failing(vitals), ElementsAre("folder"));
+}
+
+TEST_F(VitalsTest, AFolderThatTookThePlaceOfTheShownOneIsNotReady) {
+  Vitals vitals = make({});
+  const fs::path aside = directory_.path() / "aside";
+  fs::rename(folder(), aside);
+  EXPECT_THAT(failing(vitals), ElementsAre("folder"));
+  fs::create_directory(folder());
+  EXPECT_THAT(failing(vitals), ElementsAre("folder"));
+  EXPECT_THAT(vitals.answer({}, "readyz").text, HasSubstr("start the server again"));
+  fs::remove(folder());
+  fs::rename(aside, folder());
+  EXPECT_THAT(failing(vitals), IsEmpty());
 }
 
 TEST_F(VitalsTest, WhatIsWrittenNeedsDisk) {
