@@ -306,6 +306,7 @@ std::string check_system(const Source& source, const Include& include) {
       {"server/http_server.cpp", {"sys/socket.h", "unistd.h"}},
       {"storage/io/child_process.cpp",
        {"csignal", "fcntl.h", "poll.h", "sys/prctl.h", "sys/socket.h", "sys/wait.h", "unistd.h"}},
+      {"storage/io/code_memory.cpp", {"sys/mman.h", "unistd.h"}},
       {"storage/io/confinement.cpp", {"sys/prctl.h", "sys/resource.h", "sys/time.h", "unistd.h"}},
       {"storage/io/descriptor.h", {"unistd.h"}},
       {"storage/io/folder.cpp", {"dirent.h", "fcntl.h", "sys/stat.h"}},
