@@ -7,7 +7,8 @@
 
 namespace meshhier::execution {
 
-/// A flag that is set once. Thread-safe; cancel() may be called in a signal handler.
+/// A flag that is set once. Thread-safe; cancel() may be called in a signal handler. Its order is
+/// relaxed: nothing that another thread has written is read because of it.
 class CancelToken {
  public:
   void cancel() noexcept { cancelled_.store(true, std::memory_order_relaxed); }

@@ -41,6 +41,7 @@ class SplitCells {
     const std::array<std::uint32_t, 3> cell{static_cast<std::uint32_t>(x),
                                             static_cast<std::uint32_t>(y),
                                             static_cast<std::uint32_t>(z)};
+    // Relaxed: a number stands alone, and threads that look at a cell at once find the same one.
     std::atomic<std::uint32_t>& known = starts_[(cell[0] * kSide + cell[1]) * kSide + cell[2]];
     const std::uint32_t start = known.load(std::memory_order_relaxed);
     return start != kUnknown ? start : look_at(cell, known);

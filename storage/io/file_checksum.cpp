@@ -38,10 +38,9 @@ void FileChecksum::add(std::uint64_t offset, std::span<const std::byte> bytes) {
     const std::size_t size = block_bytes(block);
     if (begin + size > end)
       return;
-    if (known_[block])
-      continue;
-    sums_[block] = checksum(bytes.subspan(begin - offset, size));
-    known_[block] = true;
+    // One thread computes it, and the others, which may have read the same, go on.
+    if (!known_[block].exchange(true))
+      sums_[block] = checksum(bytes.subspan(begin - offset, size));
   }
 }
 
