@@ -21,10 +21,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 
 namespace meshhier {
+
+/// Two numbers at a time. Operations on them are those of single ones, bit for bit.
+using TwoDoubles = double __attribute__((vector_size(16)));
 
 /// A half-line, prepared for tests.
 class Ray {
@@ -36,20 +40,36 @@ class Ray {
   const Vec3d& direction() const { return direction_; }
   Vec3d at(double distance) const { return origin_ + direction_ * distance; }
 
-  struct Span {
-    double entry = 0, exit = 0;  ///< distances along the ray; below 0 behind its origin
-    bool is_empty() const { return !(entry <= exit && exit >= 0); }
+  /// `Real`: double, or TwoDoubles of two boxes.
+  template <class Real>
+  struct SpanOf {
+    Real entry, exit;  ///< distances along the ray; below 0 behind its origin
+    auto is_empty() const { return !((entry <= exit) & (exit >= 0.0)); }
   };
+  using Span = SpanOf<double>;
   /// Returns where the ray is in a box, made larger by what rounding may do to a hit; empty if it
   /// misses it.
   template <class Scalar>
   Span span(const Vec3<Scalar>& low, const Vec3<Scalar>& high) const {
-    const Vec3d from = to_vec3d(low) - origin_, to = to_vec3d(high) - origin_;
-    const double slack = kSlack * std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z),
-                                            std::abs(to.x), std::abs(to.y), std::abs(to.z)});
-    Span span{-kFar, kFar};
-    for (int axis = 0; axis < 3; ++axis)
-      narrow(span, axis, from[axis] - slack, to[axis] + slack);
+    return span_in(std::array<double, 3>{low.x, low.y, low.z},
+                   std::array<double, 3>{high.x, high.y, high.z});
+  }
+  /// Likewise, of as many boxes at a time as a Real has numbers; corners are given axis by axis.
+  template <class Real>
+  SpanOf<Real> span_in(std::array<Real, 3> low, std::array<Real, 3> high) const {
+    Real farthest{};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      low[k] = low[k] - origin_[axis];
+      high[k] = high[k] - origin_[axis];
+      farthest = larger(farthest, larger(larger(low[k], -low[k]), larger(high[k], -high[k])));
+    }
+    const Real slack = kSlack * farthest;
+    SpanOf<Real> span{Real{} - kFar, Real{} + kFar};
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<std::size_t>(axis);
+      narrow(span, axis, low[k] - slack, high[k] + slack);
+    }
     return span;
   }
 
@@ -65,19 +85,22 @@ class Ray {
   /// Along an axis that it hardly moves along, a ray stays where it is: quotients stay finite.
   static constexpr double kStill = 1e-250;
 
-  template <class Scalar>
-  static Vec3d to_vec3d(const Vec3<Scalar>& p) {
-    return {p.x, p.y, p.z};
+  template <class Real>
+  static Real larger(Real a, Real b) {
+    return a < b ? b : a;
   }
-  void narrow(Span& span, int axis, double from, double to) const {
+  template <class Real>
+  void narrow(SpanOf<Real>& span, int axis, Real from, Real to) const {
     const double pace = inverse_[axis];
     if (pace == 0) {
-      if (from > 0 || to < 0)
-        span = {kFar, -kFar};
+      const auto is_missed = (from > 0.0) | (to < 0.0);
+      span.entry = is_missed ? Real{} + kFar : span.entry;
+      span.exit = is_missed ? Real{} - kFar : span.exit;
       return;
     }
-    span.entry = std::max(span.entry, (pace > 0 ? from : to) * pace);
-    span.exit = std::min(span.exit, (pace > 0 ? to : from) * pace);
+    const Real exit = (pace > 0 ? to : from) * pace;
+    span.entry = larger(span.entry, (pace > 0 ? from : to) * pace);
+    span.exit = exit < span.exit ? exit : span.exit;
   }
   Vec3d sheared(const Vec3f& corner) const;
 

@@ -91,11 +91,14 @@ class TriangleTree {
     /// it.
     std::array<double, 4> distances(const Ray& ray) const {
       std::array<double, 4> entries{};
-      for (std::size_t k = 0; k < 4; ++k) {
-        const Ray::Span span =
-            ray.span(Vec3f{low_x[k], low_y[k], low_z[k]}, Vec3f{high_x[k], high_y[k], high_z[k]});
-        entries[k] =
-            span.is_empty() ? std::numeric_limits<double>::infinity() : std::max(span.entry, 0.0);
+      for (std::size_t k = 0; k < 4; k += 2) {
+        const auto two = [k](const Four& four) { return TwoDoubles{four[k], four[k + 1]}; };
+        const auto span = ray.span_in<TwoDoubles>({two(low_x), two(low_y), two(low_z)},
+                                                  {two(high_x), two(high_y), two(high_z)});
+        const TwoDoubles entry = span.entry > 0.0 ? span.entry : TwoDoubles{};
+        const auto is_empty = span.is_empty();
+        for (std::size_t i = 0; i < 2; ++i)
+          entries[k + i] = is_empty[i] ? std::numeric_limits<double>::infinity() : entry[i];
       }
       return entries;
     }
