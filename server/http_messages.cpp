@@ -21,6 +21,13 @@ std::optional<std::string> header(const httplib::Request& request, const char* n
   return request.get_header_value(name);
 }
 
+/// Returns the host that is asked; "" if there is none, which HTTP/1.0 alone allows.
+std::optional<std::string> host_of(const httplib::Request& request) {
+  if (request.version == "HTTP/1.0")
+    return header(request, "Host");
+  return header(request, "Host").value_or("");
+}
+
 /// Whether a body is announced. Heads that say it in two ways were refused before.
 bool announces_body(const httplib::Request& request) {
   return request.has_header("Transfer-Encoding") ||
@@ -67,7 +74,7 @@ httplib::ContentProvider sender_of(const std::string& text) {
 Request request_of(const httplib::Request& request, Body* body) {
   return {request.method,
           request.target,
-          header(request, "Host"),
+          host_of(request),
           header(request, "Accept-Encoding"),
           header(request, "If-None-Match"),
           header(request, "If-Range"),

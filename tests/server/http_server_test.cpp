@@ -203,6 +203,13 @@ TEST_F(HttpServerTest, HostsOfOthersAreRefused) {
   }
 }
 
+TEST_F(HttpServerTest, HealthChecksOfHttp10NameNoHost) {
+  start();
+  RawClient client(port());
+  client.send("GET /models.json HTTP/1.0\r\n\r\n");
+  EXPECT_EQ(client.receive().status, 200);
+}
+
 TEST_F(HttpServerTest, AHeadWithoutEndIsRefused) {
   start();
   for (const std::string& begin : {"GET /"s, "GET / HTTP/1.1\r\nX: "s}) {
