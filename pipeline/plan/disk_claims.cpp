@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <set>
 #include <span>
 #include <string>
@@ -29,11 +30,17 @@ std::uint64_t read_claim(const fs::path& lock, storage::FileSystem& files) {
   return bytes;
 }
 
+bool is_at_work(const fs::path& lock, storage::FileSystem& files) {
+  if (const auto* shared = dynamic_cast<const storage::SharedFileSystem*>(&files))
+    return shared->is_locked(lock);
+  return files.exists(lock) && files.try_lock(lock) == nullptr;
+}
+
 /// Returns what the build in a work directory will yet take; 0 if none is at work there.
 std::uint64_t left_of_claim(const fs::path& work, storage::FileSystem& files) {
   try {
     const fs::path lock = storage::lock_path(work);
-    if (!files.exists(lock) || files.try_lock(lock) != nullptr)
+    if (!is_at_work(lock, files))
       return 0;
     const std::uint64_t claimed = read_claim(lock, files);
     return claimed - std::min(claimed, storage::bytes_below(files, work));
@@ -90,8 +97,8 @@ std::uint64_t claimed_beside(const fs::path& output, storage::FileSystem& files)
   std::set<fs::path> works = works_beside(parent, files);
   works.erase(files.canonical(storage::work_path(output)));
   std::uint64_t bytes = 0;
-  for (const fs::path& work : works)
-    bytes += left_of_claim(work, files);
+  for (const fs::path& work : works)  // what a file says may be anything
+    bytes += std::min(left_of_claim(work, files), UINT64_MAX - bytes);
   return bytes;
 }
 

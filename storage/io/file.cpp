@@ -96,6 +96,9 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
                                                   std::string_view ending) const override {
     return storage::locked_files(directory, ending);
   }
+  bool is_locked(const std::filesystem::path& file) const override {
+    return storage::is_locked(file);
+  }
 
   FileSystem& input() override { return with_archives_; }
 
@@ -129,7 +132,7 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
 
   std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) override {
     for (;;) {
-      const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+      const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
       if (descriptor < 0)
         fail_system("create", path, errno);
       if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {

@@ -17,9 +17,10 @@ std::filesystem::path file_system_root(const std::filesystem::path& directory);
 class SharedFileSystem {
  public:
   virtual ~SharedFileSystem() = default;
-  /// As the function below.
+  /// As the functions below.
   virtual std::vector<std::filesystem::path> locked_files(const std::filesystem::path& directory,
                                                           std::string_view ending) const = 0;
+  virtual bool is_locked(const std::filesystem::path& file) const = 0;
 };
 
 /// Returns the files on the file system of `directory` that end in `ending` and that processes of
@@ -29,9 +30,13 @@ class SharedFileSystem {
 std::vector<std::filesystem::path> locked_files(const std::filesystem::path& directory,
                                                 std::string_view ending);
 
+/// Whether a process has locked a file by FileSystem::try_lock(): of whatever user, if this one may
+/// read the file. Makes no file and follows no link; never throws.
+bool is_locked(const std::filesystem::path& file);
+
 /// As long as it lives, no other process of this machine has the turn on that file system: for
 /// things that take no time. Waits up to 3 s for it, then goes on without, and so it does where a
-/// file system has no locks; never throws.
+/// file system has no locks, or its topmost directory may not be read; never throws.
 class DeviceTurn {
  public:
   /// `directory`: any on the file system.

@@ -7,6 +7,7 @@
 #include "tests/support/sample_hierarchy.h"
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -16,6 +17,7 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -37,6 +39,9 @@ class FilesOfTest final : public storage::ForwardingFiles, public storage::Share
       return !path.native().starts_with(below_);
     });
     return found;
+  }
+  bool is_locked(const std::filesystem::path& file) const override {
+    return storage::is_locked(file);
   }
 
  private:
@@ -94,6 +99,32 @@ TEST_F(DiskClaimsTest, BuildsInOtherFoldersOfTheDiskCount) {
   files_->make_directories(output("two"));
   EXPECT_EQ(claimed_beside(output("two/b.hier"), *files_), 5000U - kNoteBytes);
   EXPECT_EQ(claimed_beside(output("three/four/b.hier"), *files_), 5000U - kNoteBytes);
+}
+
+TEST_F(DiskClaimsTest, ClaimsBeyondAllNumbersAreNoSmallOnes) {
+  const auto first = begin("a.hier"), second = begin("b.hier");
+  for (const char* name : {"a.hier", "b.hier"})
+    claim(storage::work_path(output(name)), UINT64_MAX);
+  EXPECT_EQ(claimed_beside(output("c.hier"), *files_), UINT64_MAX);
+}
+
+TEST_F(DiskClaimsTest, BuildsOfOtherUsersInTheFolderCount) {
+  if (geteuid() != 0)
+    GTEST_SKIP() << "only root can become another user";
+  const auto lock = begin("a.hier");
+  const auto work = storage::work_path(output("a.hier"));
+  claim(work, 5000);
+  ASSERT_EQ(chmod(directory_.path().c_str(), 0755), 0);
+  ASSERT_EQ(chmod(storage::lock_path(work).c_str(), 0644), 0);
+  constexpr uid_t kNobody = 65534;
+  const pid_t process = fork();
+  if (process == 0) {
+    const bool is_nobody = setuid(kNobody) == 0;
+    _exit(is_nobody && claimed_beside(output("b.hier"), *files_) == 5000U - kNoteBytes ? 0 : 1);
+  }
+  int status = -1;
+  ASSERT_EQ(waitpid(process, &status, 0), process);
+  EXPECT_EQ(status, 0);
 }
 
 TEST_F(DiskClaimsTest, WhatIsRefusedIsNotClaimed) {
