@@ -56,6 +56,79 @@ void add_batch_options(CLI::App& command, BuildArguments& arguments) {
       ->needs(each);
 }
 
+/// Adds --set, and options of their own for keys that are set often.
+void add_key_options(CLI::App& command, BuildArguments& arguments) {
+  command
+      .add_option("--set", arguments.settings,
+                  "Set keys of the config, dotted: partition.vertices=4096. Paths given here "
+                  "are relative to the current directory")
+      ->type_name("KEY=VALUE");
+  struct KeyOption {
+    const char *name, *key, *value, *help;
+  };
+  for (const KeyOption& option :
+       {KeyOption{"--drape", "texture.drape=", "FILE",
+                  "The orthophoto (GeoTIFF) that heights of a raster show"},
+        KeyOption{"--objects", "objects.from=", "SOURCE",
+                  "What objects are made from: node, group, object, material, file, solid, "
+                  "feature, label:NAME, or none"},
+        KeyOption{"--object-table", "objects.table=", "FILE",
+                  "Properties of the objects: CSV or lines of JSON, with a column id or name"}}) {
+    command
+        .add_option_function<std::string>(
+            option.name,
+            [&arguments, key = option.key](const std::string& value) {
+              arguments.settings.push_back(key + value);
+            },
+            option.help)
+        ->type_name(option.value);
+  }
+}
+
+/// Adds --no-links and --within.
+void add_input_rules(CLI::App& command, BuildArguments& arguments) {
+  CLI::Option* no_links =
+      command.add_flag("--no-links", arguments.no_links,
+                       "Refuse input files and configs with a link in their paths");
+  command
+      .add_option("--within", arguments.within,
+                  "Read no input file that lies outside this folder, or behind a link in it")
+      ->type_name("FOLDER")
+      ->check(name_fault)
+      ->excludes(no_links);
+}
+
+/// Adds --stats and --input-note.
+void add_file_options(CLI::App& command, BuildArguments& arguments, CLI::Option* dry_run) {
+  command
+      .add_option("--stats", arguments.stats,
+                  "Write what each stage took of time, memory and disk, as JSON")
+      ->type_name("FILE")
+      ->check(name_fault)
+      ->excludes(dry_run);
+  command
+      .add_option("--input-note", arguments.input_note,
+                  "Write which files were read, with sizes, times and checksums, and which were "
+                  "missing, as JSON")
+      ->type_name("FILE")
+      ->check(name_fault)
+      ->excludes(dry_run);
+}
+
+/// Adds --help-config and --help-formats.
+void add_references(CLI::App& command, BuildArguments& arguments) {
+  command
+      .add_flag("--help-config{text}", arguments.help_config,
+                "List the keys of the config; =schema: as a JSON schema, for editors; =markdown: "
+                "as a table")
+      ->check(CLI::IsMember(key_references()));
+  command
+      .add_flag("--help-formats{text}", arguments.help_formats,
+                "List the formats of meshes and what is kept of each; =json: these and those of "
+                "pictures, for programs; =markdown: as a table")
+      ->check(CLI::IsMember(format_references()));
+}
+
 /// Throws for options that are for one build alone.
 void check_batch(const CLI::App& command, const BuildArguments& arguments) {
   if (!arguments.each)
@@ -81,37 +154,7 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
                    "The hierarchy to make: a directory, or one file if it ends in .3tz")
       ->type_name("PATH")
       ->check(name_fault);
-  command
-      ->add_option("--set", arguments->settings,
-                   "Set keys of the config, dotted: partition.vertices=4096. Paths given here "
-                   "are relative to the "
-                   "current directory")
-      ->type_name("KEY=VALUE");
-  command
-      ->add_option_function<std::string>(
-          "--drape",
-          [arguments](const std::string& picture) {
-            arguments->settings.push_back("texture.drape=" + picture);
-          },
-          "The orthophoto (GeoTIFF) that heights of a raster show")
-      ->type_name("FILE");
-  command
-      ->add_option_function<std::string>(
-          "--objects",
-          [arguments](const std::string& source) {
-            arguments->settings.push_back("objects.from=" + source);
-          },
-          "What objects are made from: node, group, object, material, file, solid, feature, "
-          "label:NAME, or none")
-      ->type_name("SOURCE");
-  command
-      ->add_option_function<std::string>(
-          "--object-table",
-          [arguments](const std::string& table) {
-            arguments->settings.push_back("objects.table=" + table);
-          },
-          "Properties of the objects: CSV or lines of JSON, with a column id or name")
-      ->type_name("FILE");
+  add_key_options(*command, *arguments);
   CLI::Option* force = command->add_flag("--force", arguments->force, "Replace an existing output");
   command->add_flag("--restart", arguments->restart,
                     "Throw away what an earlier build of this output, which was stopped, had done");
@@ -121,15 +164,7 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
       ->group("");
   command->add_flag("--verbose", arguments->verbose,
                     "Also print what each stage took of time, memory and disk");
-  CLI::Option* no_links =
-      command->add_flag("--no-links", arguments->no_links,
-                        "Refuse input files and configs with a link in their paths");
-  command
-      ->add_option("--within", arguments->within,
-                   "Read no input file that lies outside this folder, or behind a link in it")
-      ->type_name("FOLDER")
-      ->check(name_fault)
-      ->excludes(no_links);
+  add_input_rules(*command, *arguments);
   CLI::Option* dry_run =
       command->add_flag("--dry-run", arguments->dry_run,
                         "Read only the mesh's header (or import it to count it); "
@@ -143,29 +178,8 @@ void add_build_command(CLI::App& parser, Invocation& invocation) {
   add_batch_options(*command, *arguments);
   command->add_flag("--json", arguments->json, "With --dry-run: one JSON object, for programs")
       ->needs(dry_run);
-  command
-      ->add_option("--stats", arguments->stats,
-                   "Write what each stage took of time, memory and disk, as JSON")
-      ->type_name("FILE")
-      ->check(name_fault)
-      ->excludes(dry_run);
-  command
-      ->add_option("--input-note", arguments->input_note,
-                   "Write which files were read, with sizes, times and checksums, and which were "
-                   "missing, as JSON")
-      ->type_name("FILE")
-      ->check(name_fault)
-      ->excludes(dry_run);
-  command
-      ->add_flag("--help-config{text}", arguments->help_config,
-                 "List the keys of the config; =schema: as a JSON schema, for editors; =markdown: "
-                 "as a table")
-      ->check(CLI::IsMember(key_references()));
-  command
-      ->add_flag("--help-formats{text}", arguments->help_formats,
-                 "List the formats of meshes and what is kept of each; =json: these and those of "
-                 "pictures, for programs; =markdown: as a table")
-      ->check(CLI::IsMember(format_references()));
+  add_file_options(*command, *arguments, dry_run);
+  add_references(*command, *arguments);
   add_progress_option(*command, invocation.progress);
   command->footer(build_footer());
   command->callback([arguments, command, &invocation] {

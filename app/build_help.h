@@ -13,6 +13,8 @@ const References& key_references();
 /// Returns the forms that --help-formats prints.
 const References& format_references();
 
+/// Returns what stands below the options in the help of `build`: what FILE may be, the defaults,
+/// examples.
 std::string build_footer();
 
 }  // namespace meshhier::app
