@@ -7,6 +7,7 @@
 #include "mesh_io/input_error.h"
 #include "mesh_io/input_folder.h"
 #include "mesh_io/other_formats.h"
+#include "storage/format/layout.h"
 
 #include <algorithm>
 #include <string>
@@ -91,7 +92,7 @@ void require_no_output_among(storage::FileSystem& files, const std::vector<fs::p
 }  // namespace
 
 bool is_hierarchy(storage::FileSystem& files, const fs::path& path) {
-  return files.input().kind(path / "hierarchy.json") == storage::FileKind::regular;
+  return files.input().kind(storage::manifest_path(path)) == storage::FileKind::regular;
 }
 
 Config load_named(storage::FileSystem& files, const std::vector<fs::path>& named,
