@@ -1,5 +1,6 @@
 // Kernels one by one, in triangles, vertices or questions a second of CPU time: what a hierarchy's
 // tiles cost.
+#include "base/angle.h"
 #include "bench/sample_tiles.h"
 #include "cluster_simplify/contraction.h"
 #include "cluster_simplify/quadric.h"
@@ -7,10 +8,10 @@
 #include "partition/top_tree.h"
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -189,7 +190,10 @@ void search_triangles(benchmark::State& state, const Ask& ask) {
     double angle = 0;
     for (const auto& [a, b, c] : triangles) {
       angle += 1;  // radian: all around
-      ask(search, to_double(a + b + c) * (1.0 / 3), {std::cos(angle), 0, std::sin(angle)});
+      if (angle > 2 * std::numbers::pi)
+        angle -= 2 * std::numbers::pi;
+      const UnitTurn way = turn_by(angle);
+      ask(search, to_double(a + b + c) * (1.0 / 3), {way.cosine, 0, way.sine});
     }
   }
   count_triangles(state, static_cast<std::int64_t>(triangles.size()));
