@@ -36,14 +36,24 @@ bool is_at_work(const fs::path& lock, storage::FileSystem& files) {
   return files.exists(lock) && files.try_lock(lock) == nullptr;
 }
 
+/// Returns the bytes of a build's files; 0 if one may not be read, or has gone while they are
+/// counted, as temporary ones do.
+std::uint64_t written_in(const fs::path& work, storage::FileSystem& files) {
+  try {
+    return storage::bytes_below(files, work);
+  } catch (const Error&) {
+    return 0;
+  }
+}
+
 /// Returns what the build in a work directory will yet take; 0 if none is at work there.
 std::uint64_t left_of_claim(const fs::path& work, storage::FileSystem& files) {
   try {
     const fs::path lock = storage::lock_path(work);
     if (!is_at_work(lock, files))
       return 0;
-    const std::uint64_t claimed = read_claim(lock, files);
-    return claimed - std::min(claimed, storage::bytes_below(files, work));
+    const std::uint64_t claimed = read_claim(lock, files), written = written_in(work, files);
+    return is_at_work(lock, files) ? claimed - std::min(claimed, written) : 0;
   } catch (const Error&) {  // it has just ended
     return 0;
   }

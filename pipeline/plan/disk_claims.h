@@ -3,8 +3,8 @@
 //
 // Builds of one machine note theirs one after the other, and look at those that were there before:
 // of two that do not fit together, one goes on. Of other users, containers and machines those in
-// the same folder are seen, but perhaps at the same moment: then both may be refused, never both go
-// on.
+// the same folder are seen if their files may be read, but perhaps at the same moment: then both
+// may be refused, never both go on.
 #pragma once
 
 #include "storage/io/file.h"

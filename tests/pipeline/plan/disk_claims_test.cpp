@@ -27,7 +27,7 @@ namespace {
 constexpr std::uint64_t kNoteBytes = 20;  // a claim itself
 
 /// Sees what the processes of one test have locked, not other builds on this machine.
-class FilesOfTest final : public storage::ForwardingFiles, public storage::SharedFileSystem {
+class FilesOfTest : public storage::ForwardingFiles, public storage::SharedFileSystem {
  public:
   FilesOfTest(storage::FileSystem& real, const std::filesystem::path& directory)
       : ForwardingFiles(real), below_(real.canonical(directory).string() + '/') {}
@@ -46,6 +46,17 @@ class FilesOfTest final : public storage::ForwardingFiles, public storage::Share
 
  private:
   std::string below_;
+};
+
+/// Lists a file that goes before it is looked at.
+class RestlessFiles final : public FilesOfTest {
+ public:
+  using FilesOfTest::FilesOfTest;
+  std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override {
+    auto found = FilesOfTest::list(directory);
+    found.push_back(directory / "was there");
+    return found;
+  }
 };
 
 class DiskClaimsTest : public testing::Test {
@@ -106,6 +117,13 @@ TEST_F(DiskClaimsTest, ClaimsBeyondAllNumbersAreNoSmallOnes) {
   for (const char* name : {"a.hier", "b.hier"})
     claim(storage::work_path(output(name)), UINT64_MAX);
   EXPECT_EQ(claimed_beside(output("c.hier"), *files_), UINT64_MAX);
+}
+
+TEST_F(DiskClaimsTest, ABuildWhoseFilesComeAndGoCounts) {
+  const auto lock = begin("a.hier");
+  claim(storage::work_path(output("a.hier")), 5000);
+  RestlessFiles restless(*real_, directory_.path());
+  EXPECT_EQ(claimed_beside(output("b.hier"), restless), 5000U);
 }
 
 TEST_F(DiskClaimsTest, BuildsOfOtherUsersInTheFolderCount) {
