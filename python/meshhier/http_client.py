@@ -29,7 +29,6 @@ FIRST_WAIT = 0.5  # seconds before the second try; twice as long each time
 MOST_WAIT = 60.0  # however long the host asks for
 SILENCE = 30.0  # seconds without a byte: then a try is over
 _MOST_REDIRECTS = 10
-_CHUNK = 1 << 16
 _LEFT = "/%:=&~+!$,;'@()*[]"  # as it is in paths
 _TOO_LARGE = f"the host sends files whole, but no parts of them (HTTP ranges), and this one has more than {MOST_WHOLE} bytes"
 _PASSING = {408, 425, 429}  # and all from 500 on but 501
@@ -173,7 +172,7 @@ class HttpClient:
     def _receive(self, address: Address, response: http.client.HTTPResponse, answer: Answer, most: int) -> None:
         """Appends the body. Bytes that have come stay where it breaks off."""
         try:
-            while chunk := response.read(_CHUNK):
+            while chunk := _next_bytes(response):
                 self.bytes += len(chunk)
                 if len(answer.data) + len(chunk) > most:
                     raise NetworkError(f"{address.shown}: {_TOO_LARGE if answer.is_whole else 'the host sent more than the part that was asked for'}")
@@ -266,6 +265,11 @@ def _failure(address: Address, error: Exception) -> Exception:
     if isinstance(error, http.client.LineTooLong) or "headers" in str(error):
         return NetworkError(f"{address.shown}: the header of the host's answer is too large")
     return _Passing(_reason(error))
+
+
+def _next_bytes(response: http.client.HTTPResponse) -> bytes:
+    """Bytes that have come, after a wait for the first of them; none at the end. A read of more would lose all of it if that breaks off."""
+    return response.read(0 if response.length == 0 else max(1, len(response.peek())))
 
 
 def _reason(error: Exception) -> str:

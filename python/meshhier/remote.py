@@ -8,7 +8,7 @@ import threading
 import urllib.parse
 import zipfile
 from collections import OrderedDict, deque
-from concurrent.futures import Future
+from concurrent.futures import CancelledError, Future
 from dataclasses import dataclass, field
 from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
@@ -54,9 +54,9 @@ class Blocks:
         self._coming: dict[_Key, Future[bytes]] = {}
         self._lock = threading.Lock()
 
-    def get(self, file: str, numbers: Iterable[int], fetch: Callable[[int, int], Iterable[bytes]]) -> bytes:
+    def get(self, file: str, numbers: Sequence[int], fetch: Callable[[int, int], Iterable[bytes]]) -> bytes:
         """Ascending blocks of a file, one behind the other. `fetch(first, count)` returns blocks side by side of which nobody has asked
-        for any."""
+        for any. What it raises is raised to all who wait for these blocks, but not what interrupts one thread, as Ctrl-C does."""
         wanted, own = self._claim(file, numbers)
         try:
             for first, count in _runs(own):
@@ -65,7 +65,10 @@ class Blocks:
         except BaseException as error:
             self._give_up(file, own, error)
             raise
-        return b"".join(block if isinstance(block, bytes) else block.result() for block in wanted)
+        try:
+            return b"".join(block if isinstance(block, bytes) else block.result() for block in wanted)
+        except CancelledError:  # who was to bring one was interrupted
+            return self.get(file, numbers, fetch)
 
     def keep(self, file: str, number: int, data: bytes) -> None:
         with self._lock:
@@ -95,8 +98,10 @@ class Blocks:
         with self._lock:
             left = [self._coming.pop((file, number), None) for number in numbers]
         for coming in left:
-            if coming is not None:
+            if coming is not None and isinstance(error, Exception):
                 coming.set_exception(error)
+            elif coming is not None:
+                coming.cancel()
 
 
 def _runs(numbers: Sequence[int]) -> Iterator[tuple[int, int]]:
@@ -320,10 +325,10 @@ class RemoteFolder:
         self._ahead.begin(files)
 
     def part(self, name: str, begin: int, end: int) -> bytes:
+        self.require_open()
         if name not in self._known:
             address, start = self._start(name, BLOCK)
             self._known[name] = RemoteFile(self._client, address, start, self._blocks)
-        self.require_open()
         return self._known[name].part(begin, end if end >= 0 else self._known[name].size)
 
     def require_open(self) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import gzip
 import hashlib
+import itertools
 import re
 import ssl
 import threading
@@ -121,11 +122,10 @@ class Host(ThreadingHTTPServer):
 
 def times(count: int, reply: Reply) -> Reply:
     """Does so with the first requests alone."""
-    left = [count]
+    numbers = itertools.count()  # one step of it is whole, whatever threads answer
 
     def answer(handler: _Handler) -> bool:
-        left[0] -= 1
-        return left[0] >= 0 and reply(handler)
+        return next(numbers) < count and reply(handler)
 
     return answer
 

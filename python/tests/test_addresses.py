@@ -4,6 +4,8 @@
 from __future__ import annotations
 
 import base64
+import http.client
+import io
 import os
 import pickle
 import shutil
@@ -94,7 +96,7 @@ class Busy:
             self._now += 1
             self.most = max(self.most, self._now)
         try:
-            self._barrier.wait(5)
+            self._barrier.wait(25)
             self._barrier.abort()  # they have been together; those that come later need not wait
         except threading.BrokenBarrierError:
             pass
@@ -321,6 +323,60 @@ def test_what_breaks_off_goes_on(host: Host, root: Path) -> None:
     host.reply = half
     with pytest.raises(meshhier.NetworkError, match="broke off, 5 times"):
         meshhier.open(f"{host.address}/a.hier/").read_tile((0, 0))
+
+
+class _Line(io.RawIOBase):
+    """A socket on which these pieces come, and then a failure."""
+
+    def __init__(self, *pieces: bytes) -> None:
+        self._pieces = list(pieces)
+
+    def makefile(self, mode: str) -> io.BufferedReader:
+        return io.BufferedReader(self)
+
+    def readable(self) -> bool:
+        return True
+
+    def readinto(self, room: Any) -> int:
+        if not self._pieces:
+            raise ConnectionResetError("reset")
+        piece = self._pieces.pop(0)
+        room[: len(piece)] = piece
+        return len(piece)
+
+
+@pytest.mark.parametrize(
+    "head, body",
+    [("Content-Length: 60000", (b"a" * 1500, b"b" * 700)), ("Transfer-Encoding: chunked", (b"8000\r\n" + b"a" * 1500, b"b" * 700))],
+)
+def test_what_came_before_a_line_breaks_is_kept(head: str, body: tuple[bytes, ...]) -> None:
+    response = http.client.HTTPResponse(_Line(f"HTTP/1.1 206 Part\r\n{head}\r\n\r\n".encode(), *body))  # type: ignore[arg-type]
+    response.begin()
+    answer = http_client.Answer()
+    with pytest.raises(http_client._Passing):
+        http_client.HttpClient()._receive(http_client.Address("http://a", "a"), response, answer, 60000)
+    assert answer.data == b"a" * 1500 + b"b" * 700
+
+
+def test_who_waits_is_not_interrupted_with_who_fetches() -> None:
+    class Claimed(list[int]):
+        def __iter__(self) -> Iterator[int]:
+            claimed.set()
+            return super().__iter__()
+
+    def interrupted(first: int, count: int) -> list[bytes]:
+        other.start()
+        claimed.wait()
+        raise KeyboardInterrupt
+
+    claimed = threading.Event()
+    found: list[bytes] = []
+    blocks = remote.Blocks(1000)
+    other = threading.Thread(target=lambda: found.append(blocks.get("a", Claimed([0]), lambda first, count: [b"bytes"])))
+    with pytest.raises(KeyboardInterrupt):
+        blocks.get("a", [0], interrupted)
+    other.join()
+    assert found == [b"bytes"]
 
 
 def test_silent_hosts(host: Host, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -672,3 +728,17 @@ def test_objects_are_read_by_the_block(tmp_path: Path) -> None:
             assert web.objects is not None and len(web.objects) == 600
             row = web.objects.find("house 0321")
             assert row is not None and row.box is not None and row.box[0].tolist() == [321, 0, 0]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+@pytest.mark.parametrize("name", ["a.hier", "a.3tz"])
+def test_a_forked_process_reads_objects_as_its_parent_did(name: str, tmp_path: Path) -> None:
+    (tmp_path / "a.obj").write_text("".join(f"v {i} 0 0\nv {i}.5 0 0\nv {i} 1 0\ng house {i:04}\nf -3 -2 -1\n" for i in range(600)))
+    meshhier.build(tmp_path / "a.obj", tmp_path / name, objects="group").close()
+    with Host(tmp_path) as host, meshhier.open(f"{host.address}/{name}") as web:
+        assert web.objects is not None and web.objects[0].name == "house 0000"
+        child = os.fork()
+        if child == 0:
+            signal.alarm(30)
+            os._exit(0 if web.objects[599].name == "house 0599" else 1)
+        assert os.waitpid(child, 0)[1] == 0
