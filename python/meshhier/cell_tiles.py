@@ -11,10 +11,12 @@ import os
 import tempfile
 from dataclasses import dataclass
 from heapq import heappop, heappush
-from typing import TYPE_CHECKING, Any, Mapping, Optional, Union
+from typing import TYPE_CHECKING, Any, Mapping, Optional
 
 from .asked import is_web_address
 from .errors import ProgramError, ProgramNotFoundError, UsageError, replaced
+from .options import Files, option_words, path_word
+from .process import run_program
 from .tree import Node
 
 if TYPE_CHECKING:
@@ -57,14 +59,12 @@ def tiles_that_fit(hierarchy: Hierarchy, name: str, room: int) -> Optional[CellT
 
 def _packed(hierarchy: Hierarchy, name: str, room: int) -> Optional[CellTiles]:
     """None where the program is not there, or cannot do it; why is told by reading without it."""
-    from .program import page
-
     with tempfile.TemporaryDirectory(prefix="meshhier-cell-") as folder:
         for file in ("index.html", "single.html"):  # a viewer that is nothing but the place of the hierarchy
             with open(os.path.join(folder, file), "w") as stream:
                 stream.write(_MARK)
         try:
-            made = page(_place(hierarchy, folder), size=room, viewer=folder).decode()
+            made = _page(hierarchy, folder, room)
         except (ProgramError, ProgramNotFoundError, UsageError):
             return None
     if hierarchy._is_replaced():
@@ -74,11 +74,17 @@ def _packed(hierarchy: Hierarchy, name: str, room: int) -> Optional[CellTiles]:
     return _cell_tiles(hierarchy, name, files, rounding)
 
 
-def _place(hierarchy: Hierarchy, folder: str) -> Union[Hierarchy, str]:
-    """Another name of it, beside which no story lies: a cell tells none, and has no room for the pictures."""
-    place = hierarchy._place[0]
+def _page(hierarchy: Hierarchy, viewer: str, size: int) -> str:
+    place, headers, _ = hierarchy._place
+    with Files() as files:
+        known = option_words("page", {"size": size, "viewer": viewer, "headers": headers}, files)
+        return run_program(["page", path_word(_other_name(place, viewer)), "--output=-", *known], prints_data=True).text
+
+
+def _other_name(place: str, folder: str) -> str:
+    """A name of a hierarchy beside which no story lies: a cell tells none, and has no room for the pictures."""
     if is_web_address(place):
-        return hierarchy
+        return place
     link = os.path.join(folder, "model" + os.path.splitext(place)[1])
     os.symlink(place, link)
     return link

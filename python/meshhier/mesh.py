@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from .asked import Path, new_file
 from .content import ByContent
 from .errors import UsageError
+from .gltf import glb_of
+from .tile import decode_image
 from .tree import Node
 
 
@@ -76,8 +78,6 @@ class Mesh(ByContent):
 
     def images_as_arrays(self) -> list[NDArray[np.uint8]]:
         """The picture of each tile, (height, width, 3 or 4) uint8. Needs Pillow."""
-        from .tile import decode_image
-
         return [decode_image(image) for image in self.images]
 
     def take(self, chosen: NDArray[np.bool_]) -> Mesh:
@@ -205,8 +205,6 @@ class Mesh(ByContent):
         Colours are light there, as glTF has them. Attributes of 32 bits and double ones are the nearest floats,
         -3.4028234663852886e38 where there is none. A picture is a primitive with a material. Raises UsageError from 4 GiB on.
         """
-        from .gltf import glb_of
-
         return glb_of(self)
 
     def write_ply(self, path: Path, *, force: bool = False) -> pathlib.Path:

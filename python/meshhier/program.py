@@ -31,7 +31,7 @@ from numpy.typing import NDArray
 from .asked import Path
 from .boxes import Box
 from .calls import MadeFile, make, maker, output_words, run, several
-from .errors import VerifyError
+from .errors import UsageError, VerifyError
 from .hierarchy import Hierarchy, Place
 from .http_client import Headers
 from .objects import ObjectRow

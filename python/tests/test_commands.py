@@ -266,6 +266,11 @@ def test_a_build_that_is_there_already_is_done(tiny: str, tmp_path: Path) -> Non
     assert [meshhier.build(tmp_path / "scan.ply", update=True).path for _ in range(2)] == [str(tmp_path / "scan.hier")] * 2
 
 
+def test_a_build_is_told_before_or_done_if_due_but_not_both(tiny: str, tmp_path: Path) -> None:
+    with pytest.raises(meshhier.UsageError, match="dry_run=True .* update=True"):
+        meshhier.build(tiny, tmp_path / "a.hier", dry_run=True, update=True)
+
+
 def test_a_stopped_build_of_another_config(large: str, tmp_path: Path) -> None:
     def stop(progress: meshhier.Progress) -> None:
         if progress.stage == "simplify":
