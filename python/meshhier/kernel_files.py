@@ -70,7 +70,7 @@ class _Server(ThreadingHTTPServer):
     def __init__(self) -> None:
         super().__init__(("127.0.0.1", 0), _Handler)
         self.files: dict[str, Files] = {}
-        self.tokens: dict[str, str] = {}
+        self.tokens: dict[tuple[object, ...], str] = {}
         self.process = os.getpid()
         threading.Thread(target=self.serve_forever, name="meshhier", daemon=True).start()
 
@@ -82,14 +82,25 @@ _lock = threading.Lock()
 _server: Optional[_Server] = None
 
 
+def _facts(path: str) -> tuple[int, ...]:
+    """By what a file is told from one that takes its place; of none nothing."""
+    try:
+        facts = os.stat(path)
+    except FileNotFoundError:
+        return ()
+    return facts.st_ino, facts.st_mtime_ns
+
+
 def kernel_address(path: str) -> str:
-    """Where a browser on this machine finds the hierarchy of an absolute path, until Python ends."""
+    """Where a browser on this machine finds the hierarchy that is at an absolute path now, until Python ends. Another one that takes its
+    place has another address."""
     global _server
+    key = path, *_facts(path)
     with _lock:
         if _server is None or _server.process != os.getpid():  # a fork has no threads
             _server = _Server()
-        if path not in _server.tokens:
+        if key not in _server.tokens:
             token = secrets.token_urlsafe(16)
             _server.files[token] = open_files(path)
-            _server.tokens[path] = token
-        return f"http://127.0.0.1:{_server.server_address[1]}/{_server.tokens[path]}"
+            _server.tokens[key] = token
+        return f"http://127.0.0.1:{_server.server_address[1]}/{_server.tokens[key]}"

@@ -184,6 +184,18 @@ def test_the_kernel_gives_files_of_an_archive_that_was_closed(built: Build, toru
     assert fetch(kernel_address(archive) + "/hierarchy.json") == (200, expected)
 
 
+def test_the_kernel_has_what_was_built_last(built: Build, torus: str, tmp_path: Path) -> None:
+    shutil.copy(built(torus, "first.3tz"), tmp_path / "a.3tz")
+    first = kernel_address(str(tmp_path / "a.3tz"))
+    shutil.copy(built(torus, "second.3tz", partition__vertices=900), tmp_path / "b.3tz")
+    os.replace(tmp_path / "b.3tz", tmp_path / "a.3tz")
+    with meshhier.open(tmp_path / "a.3tz") as now:
+        assert json.loads(fetch(kernel_address(str(tmp_path / "a.3tz")) + "/hierarchy.json")[1]) == now.manifest
+    assert fetch(first + "/hierarchy.json")[0] == 200, "cells of the first one still have it"
+    with pytest.raises(meshhier.NotAHierarchyError):
+        kernel_address(str(tmp_path / "none.3tz"))
+
+
 def test_the_kernel_finds_it_from_another_folder(model: str, viewer: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(Path(model).parent)
     with meshhier.open(Path(model).name) as hierarchy:
