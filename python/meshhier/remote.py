@@ -270,7 +270,8 @@ class RemoteArchive(Archive):
 
     def close(self) -> None:
         super().close()
-        self._client.close()
+        if self._process == os.getpid():  # else another thread may have its lock for ever
+            self._client.close()
 
 
 class RemoteFolder:
@@ -339,7 +340,8 @@ class RemoteFolder:
 
     def close(self) -> None:
         self._is_closed = True
-        self._client.close()
+        if self._process == os.getpid():  # else another thread may have its lock for ever
+            self._client.close()
 
     def _start(self, name: str, count: int) -> tuple[Address, Answer]:
         """The first bytes of a file."""

@@ -152,6 +152,20 @@ def test_a_forked_process_waits_for_no_thread_of_its_parent(name: str, host: Hos
         assert os.waitpid(child, 0)[1] == 0
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")
+@pytest.mark.parametrize("name", ["a.hier", "a.3tz"])
+def test_a_forked_process_can_close_while_its_parent_is_busy(name: str, host: Host) -> None:
+    with meshhier.open(f"{host.address}/{name}") as web:
+        with web._files._client._connections._lock:  # type: ignore[attr-defined]
+            child = os.fork()
+            if child == 0:
+                signal.alarm(10)
+                web.close()
+                os._exit(0)
+        assert os.waitpid(child, 0)[1] == 0
+        web.read_tile((0, 0))
+
+
 def test_nothing_comes_ahead_that_nobody_can_keep(host: Host, root: Path) -> None:
     with meshhier.open(f"{host.address}/a.hier", cache_bytes=0) as web, meshhier.open(root / "a.hier") as disk:
         assert list(web.iter_parts()) == list(disk.iter_parts())
