@@ -62,12 +62,15 @@ std::optional<exporting::ExportSelection> selection(const ExportArguments& argum
   return std::nullopt;
 }
 
-/// Throws CLI::RequiredError as the parser does.
+/// Throws CLI::RequiredError.
 void require_complete(const ExportArguments& arguments) {
   if (arguments.output.empty() && arguments.heights.empty())
     throw CLI::RequiredError("--output");
   if (!is_raster(arguments) && !selection(arguments))
-    throw CLI::RequiredError::Option(1, 1, 0, "--level,--node,--cut,--error,--outline");
+    throw CLI::RequiredError(
+        "say what to export, by --error (0: the original), --level, --node, --cut or --outline, or "
+        "a piece by --box, --polygon, --object or --where",
+        CLI::ExitCodes::RequiredError);
 }
 
 /// Builds a hierarchy of the piece and returns a text for people.

@@ -271,6 +271,11 @@ def test_a_build_is_told_before_or_done_if_due_but_not_both(tiny: str, tmp_path:
         meshhier.build(tiny, tmp_path / "a.hier", dry_run=True, update=True)
 
 
+def test_an_export_of_nothing_says_what_to_do(hier: str) -> None:
+    with pytest.raises(meshhier.UsageError, match=r"say what to export, by error= \(0: the original\), level=, node=, cut= or outline=True"):
+        meshhier.export(hier)
+
+
 def test_a_stopped_build_of_another_config(large: str, tmp_path: Path) -> None:
     def stop(progress: meshhier.Progress) -> None:
         if progress.stage == "simplify":

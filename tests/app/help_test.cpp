@@ -104,7 +104,7 @@ TEST_F(CommandLine, MistakesExitWithUsageAndSayWhatIsWrong) {
       {{"verify", "x", "--memory-budget", "lots"}, "512MiB"},
       {{"verify", "x", "--memory-budget", "0"}, "512MiB"},
       {{"export", "x", "--level", "1"}, "--output"},
-      {{"export", "x", "-o", "y.ply"}, "--outline"},
+      {{"export", "x", "-o", "y.ply"}, "say what to export, by --error (0: the original), --level"},
       {{"export", "x", "--level", "1", "--outline", "-o", "y.ply"}, "--outline"},
       {{"export", "x", "--cut", "", "-o", "y.ply"}, "--cut"},
       {{"export", "x", "--level", "0", "-o", "y.STL"}, "y.STL: export writes .ply, .glb, .obj, "},
