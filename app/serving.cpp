@@ -239,6 +239,11 @@ class Service {
     http_->start();
     const std::string url = server::url_of(arguments.server.host, http_->port());
     environment_.out << url << std::endl;
+    if (server::is_every_address(arguments.server.host))
+      tell_(server::LogLevel::info,
+            fmt::format("listening on all addresses of this machine: others open "
+                        "http://ADDRESS:{}/, ADDRESS being one of them",
+                        http_->port()));
     tell_if_empty(arguments);
     if (watch_)
       watch_->start();

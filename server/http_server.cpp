@@ -332,9 +332,13 @@ void HttpServer::stop() {
 }
 
 std::string url_of(const std::string& host, std::uint16_t port) {
-  if (host == "0.0.0.0" || host == "::")
+  if (is_every_address(host))
     return url_of("127.0.0.1", port);
   return fmt::format("http://{}:{}/", in_url(host), port);
+}
+
+bool is_every_address(const std::string& host) {
+  return host == "0.0.0.0" || host == "::";
 }
 
 bool is_loopback_host(const std::string& host) {

@@ -75,6 +75,8 @@ class HttpServer {
 
 /// Returns "http://127.0.0.1:8080/"; for a host that stands for all addresses, the loopback's.
 std::string url_of(const std::string& host, std::uint16_t port);
+/// Whether `host` stands for all addresses of this machine.
+bool is_every_address(const std::string& host);
 /// Whether `host` is the loopback, so that only this machine reaches a server there: if so, its URL
 /// has one of the names that is_loopback_name() knows.
 bool is_loopback_host(const std::string& host);

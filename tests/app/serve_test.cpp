@@ -418,6 +418,15 @@ TEST_F(ServeTest, FromElsewhereATokenIsNeeded) {
   EXPECT_EQ(list()["upload"]["token"], true);
 }
 
+TEST_F(ServeTest, OnAllAddressesItSaysHowOthersComeToIt) {
+  const std::uint16_t port = serve({"--host", "0.0.0.0"}).port();
+  process_->end(SIGTERM);
+  EXPECT_THAT(process_->messages(), HasSubstr(fmt::format("others open http://ADDRESS:{}/", port)));
+  serve({}).port();
+  process_->end(SIGTERM);
+  EXPECT_THAT(process_->messages(), Not(HasSubstr("ADDRESS")));
+}
+
 TEST_F(ServeTest, KilledInTheMiddleOfAnUploadItLeavesNothing) {
   fs::create_directories(inbox());
   const auto count = [&] {
