@@ -57,7 +57,9 @@ def _poster(hierarchy: Hierarchy, name: str, room: int) -> str:
 def _told(hierarchy: Hierarchy, tiles: CellTiles, name: str) -> str:
     if tiles.is_exact:
         return f"{name}: all of it, {hierarchy.triangles:,} triangles"
-    return f"{name}: {tiles.count} of {len(hierarchy._index)} tiles, within {tiles.error:.3g} {hierarchy.units or 'of the original'}"
+    count = len(hierarchy._index)
+    which = f"all {count} tiles, rounded" if tiles.count == count else f"{tiles.count} of {count} tiles"
+    return f"{name}: {which}, within {tiles.error:.3g} {hierarchy.units or 'of the original'}"
 
 
 def _origin(link: str) -> str:
@@ -125,4 +127,6 @@ def make_cell(hierarchy: Hierarchy, *, height: int, view: str, link: Optional[st
     texts["told"], texts["hierarchy"] = html.escape(_told(hierarchy, tiles, name)), tiles.element
     if tiles.is_exact:
         texts.update(link="", reached="", left="")
+    elif tiles.count == len(hierarchy._index):
+        texts.update({key: texts[key].replace("finer", "exact", 1) for key in ("reached", "left")})
     return Cell(_frame(_filled(texts), height, is_path, texts["told"]), texts["told"])

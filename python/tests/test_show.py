@@ -104,6 +104,15 @@ def test_the_program_rounds_what_does_not_fit(built: Build, torus: str, viewer: 
         assert len(cut.triangles) > hierarchy.triangles / 4
 
 
+def test_tiles_that_are_all_there_but_rounded_have_no_finer_ones(built: Build, torus: str) -> None:
+    with meshhier.open(built(torus, "rounded.hier")) as hierarchy:
+        whole = hierarchy.show()
+        cell = hierarchy.show(size=len(whole.html) - 1)
+        count = len(hierarchy._index)
+    assert re.search(rf"rounded: all {count} tiles, rounded, within \S+ of the original", repr(cell)), repr(cell)
+    assert 'data-left="; exact ones are not in this notebook"' in page_of(cell) and "finer" not in page_of(cell).partition("<script")[0]
+
+
 def _below(hierarchy: meshhier.Hierarchy, node: meshhier.Node, there: set[str]) -> list[meshhier.Node]:
     children = hierarchy.tree.children(node)
     return children if children and all(hierarchy._manifest.tile_name(child) in there for child in children) else [node]
