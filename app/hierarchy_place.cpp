@@ -3,7 +3,9 @@
 #include "app/options.h"
 #include "base/error.h"
 #include "base/plain_text.h"
+#include "base/small_letters.h"
 #include "base/text_mark.h"
+#include "base/trimmed.h"
 #include "execution/size_text.h"
 #include "storage/io/process.h"
 
@@ -26,9 +28,11 @@ constexpr std::uint64_t kMostHeaderBytes = 65536;
 /// value may be a secret: no message has it.
 void require_header(const std::string& line) {
   const std::size_t colon = line.find(':');
-  const std::string_view name = std::string_view(line).substr(0, colon);
+  const std::string name = small_letters(line.substr(0, colon));
+  const bool is_address = name == "http" || name == "https";  // misspelt: it is for another host
   const bool is_name =
-      colon != std::string::npos && !name.empty() && std::ranges::all_of(name, [](char c) {
+      colon != std::string::npos && !name.empty() && !is_address &&
+      std::ranges::all_of(name, [](char c) {
         return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
       });
   const bool is_line = std::ranges::none_of(
@@ -43,9 +47,10 @@ struct Header {
 };
 
 /// Parses "NAME: VALUE" or "https://HOST NAME: VALUE".
-Header parse_header(const std::string& text) {
-  const std::size_t end = storage::is_web_address(text) ? text.find(' ') : 0;
-  const std::size_t begin = text.find_first_not_of(' ', end);
+Header parse_header(const std::string& line) {
+  const std::string text(trimmed(line, " \t"));
+  const std::size_t end = storage::is_web_address(text) ? text.find_first_of(" \t") : 0;
+  const std::size_t begin = text.find_first_not_of(" \t", end);
   Header header{text.substr(0, end), begin == std::string::npos ? "" : text.substr(begin)};
   require_header(header.line);
   return header;
