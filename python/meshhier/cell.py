@@ -115,6 +115,8 @@ def make_cell(hierarchy: Hierarchy, *, height: int, view: str, link: Optional[st
     address = _address_of(hierarchy) if link is None else link
     if re.search(r"[\s;,'\"<>]", address):
         raise UsageError(f"no address: {address}")
+    if "@" in urlsplit(address).netloc:
+        raise UsageError("link has a user or a password in it, which everybody would read in the notebook: give it without")
     is_path = address != "" and not urlsplit(address).netloc
     whence = "the kernel" if link is None else "this host" if is_path else urlsplit(address).netloc
     name = os.fsencode(os.path.splitext(os.path.basename(hierarchy.path.rstrip("/")))[0]).decode("utf-8", "replace")

@@ -114,7 +114,7 @@ class Hierarchy:
                 "/files/david.hier"; "": nowhere.
             size: bytes of the cell's output, at the most.
 
-        Raises UsageError if not even the root fits, ProgramNotFoundError if there is no viewer, ReplacedError, CorruptError.
+        Raises UsageError if not even the root fits or `link` has a password, ProgramNotFoundError if there is no viewer, ReplacedError, CorruptError.
         """
         from .cell import make_cell
 

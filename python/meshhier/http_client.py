@@ -81,6 +81,7 @@ def _split(address: str) -> urllib.parse.SplitResult:
     try:
         parts = urllib.parse.urlsplit(address)
         parts.port  # may raise
+        (parts.hostname or "").encode("idna")  # likewise
     except ValueError:
         raise UsageError("this is no address: expected https://HOST/NAME.3tz") from None
     if parts.scheme not in ("http", "https") or not parts.hostname or re.search(r"[\0-\x20\x7f]", address):

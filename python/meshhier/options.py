@@ -157,7 +157,8 @@ def header_lines(headers: Any, before: str = "") -> list[str]:
     """The lines of requests that a mapping or a list of lines stands for; `before`: a pattern of what may begin a line. Raises ValueError
     if one is none; it has no secret."""
     lines = [f"{name}: {value}" for name, value in headers.items()] if isinstance(headers, Mapping) else [headers] if isinstance(headers, str) else list(headers)
-    if not all(isinstance(line, str) and re.fullmatch(before + r"[A-Za-z0-9_-]+:[\t -~\x80-\xff]*", line) for line in lines):
+    known = re.compile(before + r"(?!https?:)[a-z0-9_-]+:[\t -~\x80-\xff]*", re.ASCII | re.IGNORECASE)  # no line for another host
+    if not all(isinstance(line, str) and known.fullmatch(line) for line in lines):
         raise ValueError('names and values of headers, {"Authorization": "Bearer ..."}')
     return lines
 

@@ -612,14 +612,17 @@ def test_redirects_take_no_secret_to_another_host(host: Host, root: Path, tmp_pa
     assert [path for path, _ in host.requests][:2] == ["/a.3tz", "/b/a.3tz"] and all(headers["X-Key"] == "k" for _, headers in host.requests)
 
 
-@pytest.mark.parametrize("target, match", [("/a.3tz", "on and on"), ("file:///etc/passwd", "not on the web"), ("ftp://127.0.0.1/a.3tz", "not on the web"), ("http://[", "not on the web")])
-def test_redirects_that_lead_nowhere(target: str, match: str, host: Host) -> None:
+@pytest.mark.parametrize("target", ["/a.3tz", "file:///etc/passwd", "ftp://127.0.0.1/a.3tz", "http://[", "http://a..b/"])
+def test_redirects_that_lead_nowhere(target: str, host: Host) -> None:
     host.reply = status(302, Location=target)
-    with pytest.raises(meshhier.NetworkError, match=match):
+    with pytest.raises(meshhier.NetworkError, match="on and on" if target.startswith("/") else "not on the web"):
         meshhier.open(f"{host.address}/a.3tz")
 
 
-@pytest.mark.parametrize("address", ["http://", "https:///a.3tz", "http://host:99999/a.3tz", "http://ho st/a.3tz", "http://[::1/a", "http://host/a\r\nX: y"])
+@pytest.mark.parametrize(
+    "address",
+    ["http://", "https:///a.3tz", "http://host:99999/a.3tz", "http://ho st/a.3tz", "http://[::1/a", "http://host/a\r\nX: y", "http://a..b/c"],
+)
 def test_addresses_that_are_none(address: str) -> None:
     with pytest.raises(meshhier.UsageError, match="address"):
         meshhier.open(address)
@@ -631,6 +634,15 @@ def test_headers_that_are_none(host: Host, root: Path) -> None:
             meshhier.open(f"{host.address}/a.3tz", headers=headers)  # type: ignore[arg-type]
     with pytest.raises(meshhier.UsageError, match="addresses"):
         meshhier.open(root / "a.3tz", headers={"A": "b"})
+
+
+def test_a_line_for_another_host_is_no_header(host: Host) -> None:
+    for line in ("https://example.org X-Key: 1", "HTTP://example.org X-Key: 1", "http:/example.org X-Key: 1"):
+        with pytest.raises(meshhier.UsageError, match="headers"):
+            meshhier.open(f"{host.address}/a.3tz", headers=[line])
+    with pytest.raises(meshhier.UsageError, match="headers"):
+        meshhier.compare(f"{host.address}/a.3tz", "http://localhost:1/a.3tz", headers=["http:/localhost:1 X-Key: 1"])
+    assert not host.requests
 
 
 def test_certificates(root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

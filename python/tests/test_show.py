@@ -248,6 +248,9 @@ def test_a_link_is_all_that_is_asked(model: str, viewer: str) -> None:
         for address in ("https://a b", "x'y", "http://a;script-src *"):
             with pytest.raises(meshhier.UsageError, match="no address"):
                 hierarchy.show(link=address)
+        with pytest.raises(meshhier.UsageError, match="a user or a password in it") as refusal:
+            hierarchy.show(link="https://me:word@example.org/a.3tz")
+        assert "word@" not in str(refusal.value)
 
 
 def test_a_hierarchy_that_was_replaced_is_not_shown(built: Build, torus: str, model: str, tmp_path: Path) -> None:
