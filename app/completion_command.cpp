@@ -99,7 +99,8 @@ void print(const Completion& completion, std::ostream& out) {
 /// Adds the command that the scripts call; it is of no use to people.
 void add_complete_command(CLI::App& parser, Invocation& invocation) {
   const auto words = std::make_shared<std::vector<std::string>>();
-  CLI::App* command = parser.add_subcommand("complete", "Answer a shell's completion script");
+  CLI::App* command =
+      parser.add_subcommand(std::string(kComplete), "Answer a shell's completion script");
   command->group("");
   command->add_option("WORD", *words);
   command->callback([words, &parser, &invocation] {
