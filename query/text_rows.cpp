@@ -142,6 +142,10 @@ std::optional<double> number_in(std::string_view field, char separator) {
   return mesh_io::parse_real<double>(with_point);
 }
 
+std::string shown(std::string_view field) {
+  return field.empty() ? "nothing" : plain_text(field, kShownBytes);
+}
+
 /// The columns of a table that are meant.
 class Columns {
  public:
@@ -156,7 +160,7 @@ class Columns {
           fields, [&](std::string_view field) { return small_letters(field) == name; });
       if (found == fields.end())
         lines.fail(fmt::format("expected numbers, or the names of columns, {} among them; found {}",
-                               fmt::join(names_, ", "), plain_text(fields.front(), kShownBytes)));
+                               fmt::join(names_, ", "), shown(fields.front())));
       return static_cast<std::size_t>(found - fields.begin());
     };
     for (const std::string_view name : names_)
@@ -168,17 +172,16 @@ class Columns {
               std::vector<double>& numbers) const {
     if (places_.empty() && fields.size() != names_.size()) {
       lines.fail(
-          fmt::format("expected {} numbers, found {} columns; a first line with the names "
+          fmt::format("expected {} numbers, found {}; a first line with the names "
                       "{} would tell which are meant",
-                      names_.size(), fields.size(), fmt::join(names_, ", ")));
+                      names_.size(), counted(fields.size(), "columns"), fmt::join(names_, ", ")));
     }
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const std::size_t place = places_.empty() ? i : places_[i];
       const std::string_view field = place < fields.size() ? fields[place] : "";
       const auto number = number_in(field, separator);
       if (!number)
-        lines.fail(fmt::format("expected a number for {}, found {}", names_[i],
-                               field.empty() ? "nothing" : plain_text(field, kShownBytes)));
+        lines.fail(fmt::format("expected a number for {}, found {}", names_[i], shown(field)));
       numbers.push_back(*number);
     }
   }

@@ -77,6 +77,10 @@ TEST_F(RowsTest, BetweenSemicolonsCommasSeparateNothing) {
   EXPECT_THAT(read("x;y;z;note\n1;2;3;a,b\n\n4;5;6;\n"), ElementsAre(1, 2, 3, 4, 5, 6));
   EXPECT_THAT(read("1,5;-2,25;3\n4.5;5e1;,5\n"), ElementsAre(1.5, -2.25, 3, 4.5, 50, 0.5));
   EXPECT_THAT(read("\"a;b\",x,y,z\n7,1,2,3\n"), ElementsAre(1, 2, 3));
+  EXPECT_THAT(failure("1,2,3\n1;2;3\n4 5 6\n"),
+              HasSubstr("line 2: expected 3 numbers, found 1 column;"));
+  EXPECT_THAT(failure(";;;\n"), HasSubstr("line 1: expected numbers"));
+  EXPECT_THAT(failure(";;;\n"), HasSubstr("among them; found nothing"));
   EXPECT_THAT(failure("1;2;3;a,b\n"), HasSubstr("line 1: expected 3 numbers, found 4 columns"));
   EXPECT_THAT(failure("1;2;3\n1,2;3,4,5;6\n"), HasSubstr("a number for y, found 3,4,5"));
   EXPECT_THAT(failure("1;2;3\n1,000.5;2;3\n"), HasSubstr("a number for x, found 1,000.5"));
