@@ -23,9 +23,17 @@ Path = Union[str, "os.PathLike[str]"]
 def path_text(value: object) -> str:
     """A path, or an address, as text. Raises UsageError for what is none."""
     name = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
-    if not isinstance(name, str):
-        raise UsageError(f"expected a path, found {value!r}")
+    if not isinstance(name, str) or not _can_be_a_word(name):
+        is_address = isinstance(name, str) and is_web_address(name)  # perhaps with secrets
+        raise UsageError(f"expected a path, found {'an address that is none' if is_address else repr(value)}")
     return name
+
+
+def _can_be_a_word(path: str) -> bool:
+    try:
+        return b"\0" not in os.fsencode(path)
+    except UnicodeEncodeError:
+        return False
 
 
 def is_web_address(text: str) -> bool:

@@ -461,6 +461,10 @@ def test_odd_arguments(hier: str, tmp_path: Path) -> None:
     for place in (None, 3, b"a.hier"):
         with pytest.raises(meshhier.UsageError, match="expected a path, found"):
             meshhier.open(place)  # type: ignore[arg-type]
+    for name in ("a\0.hier", "\ud800.hier", "https://user:s3cret@h/a\0.3tz"):
+        with pytest.raises(meshhier.UsageError, match="expected a path, found") as refusal:
+            meshhier.compare(name, hier)
+        assert "s3cret" not in str(refusal.value)
     for make in (meshhier.build, meshhier.export, meshhier.pack, meshhier.progressive):
         with pytest.raises(meshhier.UsageError, match="on this machine to write to, found 'h/a.3tz'"):
             make(hier, "https://user:s3cret@h/a.3tz?sig=s3cret")
