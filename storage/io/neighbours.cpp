@@ -13,6 +13,7 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 namespace meshhier::storage {
 namespace {
@@ -24,14 +25,20 @@ std::optional<struct stat> status_of(const fs::path& path) {
   return ::stat(path.c_str(), &status) == 0 ? std::optional(status) : std::nullopt;
 }
 
-/// Returns the processes that hold locks, by /proc/locks: "1: FLOCK  ADVISORY  WRITE 1234 ...".
+bool is_own(const std::string& process) {
+  const auto status = status_of("/proc/" + process);
+  return status && status->st_uid == ::geteuid();
+}
+
+/// Returns this user's processes that hold locks, by /proc/locks: "1: FLOCK  ADVISORY  WRITE 1234
+/// ...". What others claim could keep root from building for ever.
 std::set<std::string> lockers() {
   std::set<std::string> processes;
   std::ifstream locks("/proc/locks");
   for (std::string line; std::getline(locks, line);) {
     std::istringstream words(line);
     std::string number, kind, way, access, process;
-    if (words >> number >> kind >> way >> access >> process && kind == "FLOCK")
+    if (words >> number >> kind >> way >> access >> process && kind == "FLOCK" && is_own(process))
       processes.insert(process);
   }
   return processes;

@@ -24,7 +24,7 @@ class SharedFileSystem {
 };
 
 /// Returns the files on the file system of `directory` that end in `ending` and that processes of
-/// this user (for root: of anybody) have open while they hold a lock; those of this one, too. Each
+/// this user have open while they hold a lock; those of this one, too. Each
 /// once, ascending, without links. Files of processes in another root or mount are missing. What
 /// cannot be looked at counts as if it were not there; never throws.
 std::vector<std::filesystem::path> locked_files(const std::filesystem::path& directory,
