@@ -229,8 +229,6 @@ def test_a_build_can_be_told_before(tiny: str, tmp_path: Path) -> None:
     assert plan.memory["least_budget_bytes"] < plan.memory["budget_bytes"] and plan.output.endswith("a.hier")
     with pytest.raises(meshhier.BudgetError):
         meshhier.build(tiny, tmp_path / "b.hier", dry_run=True, settings={"memory_budget": "1MiB"})
-    with pytest.raises(meshhier.UsageError, match="give one of them"):
-        meshhier.build(tiny, tmp_path / "b.hier", dry_run=True, update=True)
 
 
 def test_a_build_finds_its_output(tiny: str, tmp_path: Path) -> None:
