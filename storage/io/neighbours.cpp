@@ -13,7 +13,6 @@
 #include <fcntl.h>
 #include <sys/file.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 namespace meshhier::storage {
 namespace {
@@ -26,8 +25,8 @@ std::optional<struct stat> status_of(const fs::path& path) {
 }
 
 bool is_own(const std::string& process) {
-  const auto status = status_of("/proc/" + process);
-  return status && status->st_uid == ::geteuid();
+  const auto status = status_of("/proc/" + process), own = status_of("/proc/self");
+  return status && own && status->st_uid == own->st_uid;
 }
 
 /// Returns this user's processes that hold locks, by /proc/locks: "1: FLOCK  ADVISORY  WRITE 1234
