@@ -7,8 +7,7 @@ import os
 import pathlib
 from typing import TYPE_CHECKING, Any, Callable, Mapping, Optional, Sequence, Union, overload
 
-from .asked import Path, output_path
-from .errors import UsageError
+from .asked import Path, output_path, path_text
 from .hierarchy import Hierarchy, Place
 from .http_client import Headers, without_secrets
 from .options import Files, header_lines, option_words, path_word
@@ -39,10 +38,7 @@ def maker(function: Callable[Concatenate[Place, Optional[Path], Options], MadeFi
 
 
 def _place_word(place: Place) -> str:
-    try:
-        return path_word(place._place[0] if isinstance(place, Hierarchy) else place)
-    except ValueError as error:
-        raise UsageError(f"expected {error}, found {place!r}") from None
+    return path_word(path_text(place._place[0] if isinstance(place, Hierarchy) else place))
 
 
 def output_words(output: Optional[Path]) -> list[str]:
