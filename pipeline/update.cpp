@@ -41,6 +41,8 @@ std::optional<storage::Manifest> read_manifest(storage::FileSystem& files, const
 }
 
 std::optional<storage::InputNote> read_note(storage::FileSystem& files, const fs::path& path) {
+  if (files.is_link(path) || files.kind(path) != storage::FileKind::regular)
+    return std::nullopt;
   try {
     return storage::read_input_note(*files.open(path), path.string());
   } catch (const Error&) {

@@ -54,7 +54,7 @@ class NpyHead {
     std::vector<std::uint64_t> sizes;
     std::string_view left = value("shape", ")");
     while (!left.empty()) {
-      left.remove_prefix(std::min(left.find_first_of("0123456789"), left.size()));
+      left.remove_prefix(std::min(left.find_first_not_of("(, "), left.size()));
       std::uint64_t size = 0;
       const auto [end, error] = std::from_chars(left.data(), left.data() + left.size(), size);
       if (left.empty())

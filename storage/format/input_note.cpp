@@ -89,7 +89,8 @@ InputNote read_input_note(const File& file, const std::string& name) {
 
 void write_input_note(FileSystem& files, const std::filesystem::path& path, const InputNote& note) {
   const std::string text = to_json_text(note);
-  OutputFile(files, {.path = path, .replace = true}).publish(std::as_bytes(std::span(text)));
+  OutputFile(files, {.path = path, .replace = true, .is_own_name = true})
+      .publish(std::as_bytes(std::span(text)));
 }
 
 }  // namespace meshhier::storage

@@ -54,14 +54,18 @@ Error already_there(const fs::path& path, const char* state) {
   return {ErrorCode::exists, fmt::format("{} {}; --force replaces it", path.string(), state)};
 }
 
+/// Returns where a name is, whatever it leads to.
+fs::path name_itself(FileSystem& files, const fs::path& name) {
+  const fs::path folder = name.parent_path();
+  return files.canonical(folder.empty() ? "." : folder) / name.filename();
+}
+
 /// Returns where a path leads to and, if its name is a link, where that link is.
 std::vector<fs::path> places_of(FileSystem& files, const fs::path& path) {
   const fs::path name = without_last_slash(path);
   std::vector<fs::path> places{files.canonical(name)};
-  if (files.is_link(name)) {
-    const fs::path folder = name.parent_path();
-    places.push_back(files.canonical(folder.empty() ? "." : folder) / name.filename());
-  }
+  if (files.is_link(name))
+    places.push_back(name_itself(files, name));
   return places;
 }
 
@@ -127,8 +131,13 @@ fs::path output_lock_path(const fs::path& file) {
 
 OutputFile::OutputFile(FileSystem& files, const OutputRequest& request,
                        const std::function<void()>& check)
-    : files_(files), check_(check), replace_(request.replace) {
+    : files_(files), check_(check), replace_(request.replace), is_own_name_(request.is_own_name) {
   const fs::path& path = request.path;
+  if (is_own_name_) {
+    require_apart(files, path, request.inputs);
+    open_regular(request);
+    return;
+  }
   if (is_standard_output(files, path)) {
     open_stream(kSystemsStandardOutput);
     return;
@@ -163,7 +172,8 @@ void OutputFile::open_stream(const fs::path& path) {
 }
 
 void OutputFile::open_regular(const OutputRequest& request) {
-  const fs::path target = files_.canonical(request.path);
+  const fs::path target =
+      is_own_name_ ? name_itself(files_, request.path) : files_.canonical(request.path);
   require_parent(files_, request, target);
   require_short_name(request, target);
   for (const fs::path& own :
@@ -247,7 +257,7 @@ void OutputFile::settle() {
 }
 
 void OutputFile::require_replaceable() const {
-  if (!replace_ || files_.kind(target_) != FileKind::regular)
+  if (!replace_ || (!is_own_name_ && files_.kind(target_) != FileKind::regular))
     throw already_there(target_, "appeared meanwhile");
 }
 

@@ -16,9 +16,11 @@ namespace meshhier::storage {
 inline constexpr const char* kStandardOutput = "-";
 
 struct OutputRequest {
-  std::filesystem::path path;                   ///< a file, or kStandardOutput; links are followed
+  std::filesystem::path path;                   ///< a file, or kStandardOutput
   bool replace = false;                         ///< a regular file that is there
   std::vector<std::filesystem::path> inputs{};  ///< files and directories that stay as they are
+  bool is_own_name =
+      false;  ///< nobody has named it: a link or FIFO there is replaced, not followed
 };
 
 /// Whether all that is written there goes to standard output, which then can take nothing else.
@@ -80,6 +82,7 @@ class OutputFile {
   FileSystem& files_;
   std::function<void()> check_;
   bool replace_;
+  bool is_own_name_;
   std::filesystem::path target_;     ///< empty: a stream
   std::filesystem::path temporary_;  ///< its name until it is published
   bool has_replaced_ = false;        ///< the temporary one is what it has replaced

@@ -15,6 +15,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 
 namespace meshhier::app {
 namespace {
@@ -216,6 +217,27 @@ TEST_F(Update, ADamagedHierarchyIsBuiltAnew) {
   EXPECT_EQ(run(update(mesh, {"partition.vertices=500"})).code, kExists)
       << "a file in the note's place that is no note stays";
   EXPECT_EQ(text_of(note()), "no note\n");
+}
+
+TEST_F(Update, NothingIsWrittenThroughALinkInThePlaceOfTheNote) {
+  const Path mesh = write_mesh("a.ply"), other = work() / "other";
+  write_text(other, "mine\n");
+  fs::create_symlink(other, note());
+  EXPECT_EQ(run(update(mesh)).code, kExists) << "before the build";
+  EXPECT_FALSE(fs::exists(output()));
+  ASSERT_EQ(run({"build", mesh, "--set", "preview=false", "storage.normals=smooth"}).code, 0);
+  EXPECT_TRUE(is_up_to_date(mesh)) << "by reading the mesh";
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(note()))) << "in the place of the link";
+  EXPECT_EQ(text_of(other), "mine\n");
+}
+
+TEST_F(Update, AFifoInThePlaceOfTheNoteIsNotWaitedFor) {
+  const Path mesh = write_mesh("a.ply");
+  ASSERT_EQ(::mkfifo(note().c_str(), 0600), 0);
+  EXPECT_EQ(run(update(mesh)).code, kExists);
+  ASSERT_EQ(run({"build", mesh, "--set", "preview=false", "storage.normals=smooth"}).code, 0);
+  EXPECT_TRUE(is_up_to_date(mesh)) << "by reading the mesh";
+  EXPECT_TRUE(fs::is_regular_file(note()));
 }
 
 TEST_F(Update, AnAccountIsReplacedAndNoOtherFile) {

@@ -161,6 +161,7 @@ TEST_F(RowsTest, WhatIsWrongWithAnArrayIsTold) {
   EXPECT_THAT(failure(npy("<f8", "(3, 3)", six)), HasSubstr("it ends in row 2 of 3"));
   EXPECT_THAT(failure(npy("<f8", "(1, 3)", six)), HasSubstr("more behind its 1 rows"));
   EXPECT_THAT(failure(npy("<f8", "(99999999999999999999, 3)", six)), HasSubstr("shape is wrong"));
+  EXPECT_THAT(failure(npy("<f8", "(-1, 3)", six)), HasSubstr("shape is wrong"));
   EXPECT_THAT(failure(npy("<f8", "(9999999999999, 3)", six)), HasSubstr("it ends in row 2"));
   const std::string whole = npy("<f8", "(2, 3)", six);
   for (std::size_t size = 6; size < whole.size(); size += 5)
