@@ -48,13 +48,16 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Build:
     """Builds a mesh once for each set of settings: built(mesh, name, key=value, ...) -> path. Names have copies of their own."""
     folder = tmp_path_factory.mktemp("built")
     known: dict[tuple[str, ...], str] = {}
+    names: dict[str, tuple[str, ...]] = {}
 
     def build(mesh: str, name: str, **settings: object) -> str:
         path = str(folder / name)
         keys = {key.replace("__", "."): value for key, value in settings.items()}
         if "partition.count" not in keys:
             keys.setdefault("partition.vertices", 700)
-        made = known.setdefault((mesh, Path(name).suffix, repr(sorted(keys.items()))), path)
+        content = (mesh, Path(name).suffix, repr(sorted(keys.items())))
+        assert names.setdefault(path, content) == content, f"{name} is another hierarchy in another test"
+        made = known.setdefault(content, path)
         if not os.path.exists(path):
             if made == path:
                 meshhier.build(mesh, path, settings=keys).close()

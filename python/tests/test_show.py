@@ -105,11 +105,11 @@ def test_the_program_rounds_what_does_not_fit(built: Build, torus: str, viewer: 
 
 
 def test_tiles_that_are_all_there_but_rounded_have_no_finer_ones(built: Build, torus: str) -> None:
-    with meshhier.open(built(torus, "rounded.hier")) as hierarchy:
+    with meshhier.open(built(torus, "plain.hier")) as hierarchy:
         whole = hierarchy.show()
         cell = hierarchy.show(size=len(whole.html) - 1)
         count = len(hierarchy._index)
-    assert re.search(rf"rounded: all {count} tiles, rounded, within \S+ of the original", repr(cell)), repr(cell)
+    assert re.search(rf"plain: all {count} tiles, rounded, within \S+ of the original", repr(cell)), repr(cell)
     assert 'data-left="; exact ones are not in this notebook"' in page_of(cell) and "finer" not in page_of(cell).partition("<script")[0]
 
 

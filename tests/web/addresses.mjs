@@ -33,7 +33,7 @@ function filledIn(address, host) {
     .replace(/https:\/\/HOST/g, host)
     .replace(/NAME/g, 'david')
     .replace(/(models?|with|story)=URL/g, (_, key) => `${key}=${host}/${{ model: 'bucket/david.3tz', with: 'bucket/david.hier', models: 'models.json', story: 'models/david.hier.story.json' }[key]}`)
-    .replace(/=a\.hier&with=b\.hier/, '=models/david.hier&with=models/david.3tz')
+    .replace(/=(?:models\/)?a\.hier&with=(?:models\/)?b\.hier/, '=models/david.hier&with=models/david.3tz')
     .replace(/#PATH/, '#models/david.hier')
     .replace(/px,py,pz,tx,ty,tz/, '9,9,9,0,0,0')
     .replace(/…$/, '');

@@ -70,6 +70,13 @@ function compare(shown, preview, side) {
   return { pixels, mean: sum / (3 * pixels), most, bias: bias.map((value) => value / pixels) };
 }
 
+/// Whether a normal map shades what is drawn.
+function hasMap(view) {
+  let found = false;
+  view.traverse(({ material }) => (found ||= [material].flat().some((one) => one?.normalMap)));
+  return found;
+}
+
 /// `preview`: of the root, `side` pixels wide and high.
 window.compareLight = async (url, preview, side) => {
   const renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
@@ -96,6 +103,7 @@ window.compareLight = async (url, preview, side) => {
   const shown = new Uint8Array(pixels.length);
   for (let y = 0; y < side; ++y) shown.set(pixels.subarray(4 * side * (side - 1 - y), 4 * side * (side - y)), 4 * side * y);
   const result = compare(shown, await pixelsOf(preview, side), side);
+  const kind = hasMap(view) ? 'mapped' : 'plain';
   view.dispose();
-  return { ...result, rig };
+  return { ...result, rig, kind };
 };
