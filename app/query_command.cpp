@@ -72,8 +72,8 @@ coordinates of the input, and so are answers, one a row, in the order of the row
   object,name       if the mesh has objects: what the triangle belongs to
 
 FILE is a text (x y z, or x y z dx dy dz a line, between blanks, commas, semicolons or tabs; a first
-line may name columns), a .npy of n x 3 or n x 6 (float64, float32), or a PLY, of whose vertices rays have
-the normals as directions. "-" is standard input. A .npy that is written is a structured array.
+line may name columns), a .npy of n x 3 or n x 6 numbers, or a PLY, of whose vertices rays have the
+normals as directions. "-" is standard input. A .npy that is written is a structured array.
 
 Examples:
   meshhier query david.hier --points scanner.csv -o distances.csv

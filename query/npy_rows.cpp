@@ -4,6 +4,7 @@
 #include "base/plain_text.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstddef>
 #include <cstring>
@@ -96,33 +97,62 @@ std::uint64_t rows_of(const NpyHead& head, RowKind kind) {
   return shape[0];
 }
 
-/// Returns the bytes of a number.
-std::size_t size_of_number(const NpyHead& head) {
-  const std::string_view type = head.value("descr", ",");
-  if (type.starts_with('['))
-    head.fail(
-        "its rows are records: save numpy.lib.recfunctions.structured_to_unstructured() of it");
-  if (type != "'<f4'" && type != "'<f8'") {
-    head.fail(
-        fmt::format("expected numbers of float64 or float32, found the type {}: save "
-                    "array.astype(\"float64\")",
-                    plain_text(type, 60)));
-  }
-  return type == "'<f4'" ? sizeof(float) : sizeof(double);
+/// A type of numbers, by numpy's name without the order of bytes.
+struct NumberType {
+  std::string_view name;
+  std::size_t size;
+  double (*number)(const std::byte*);
+};
+
+template <class Number>
+constexpr NumberType number_type(std::string_view name) {
+  return {name, sizeof(Number), [](const std::byte* bytes) {
+            Number number;
+            std::memcpy(&number, bytes, sizeof number);
+            return static_cast<double>(number);
+          }};
 }
 
-void append_numbers(std::span<const std::byte> bytes, std::size_t size,
-                    std::vector<double>& numbers) {
-  for (std::size_t at = 0; at < bytes.size(); at += size) {
-    double number = 0;
-    float single = 0;
-    if (size == sizeof number)
-      std::memcpy(&number, bytes.data() + at, sizeof number);
-    else
-      std::memcpy(&single, bytes.data() + at, sizeof single);
-    numbers.push_back(size == sizeof number ? number : double{single});
+constexpr std::array kNumberTypes{
+    number_type<double>("f8"),       number_type<float>("f4"),
+    number_type<std::int8_t>("i1"),  number_type<std::uint8_t>("u1"),
+    number_type<std::int16_t>("i2"), number_type<std::uint16_t>("u2"),
+    number_type<std::int32_t>("i4"), number_type<std::uint32_t>("u4"),
+    number_type<std::int64_t>("i8"), number_type<std::uint64_t>("u8")};
+
+/// The numbers of an array.
+class Numbers {
+ public:
+  explicit Numbers(const NpyHead& head) {
+    const std::string_view type = head.value("descr", ",");
+    if (type.starts_with('['))
+      head.fail(
+          "its rows are records: save numpy.lib.recfunctions.structured_to_unstructured() of it");
+    const auto found = std::ranges::find_if(kNumberTypes, [&](const NumberType& known) {
+      return type.size() == 5 && std::string_view("<>|").find(type[1]) != std::string_view::npos &&
+             type.substr(2, 2) == known.name;
+    });
+    if (found == kNumberTypes.end()) {
+      head.fail(fmt::format("expected numbers, found the type {}: save array.astype(\"float64\")",
+                            plain_text(type, 60)));
+    }
+    type_ = *found;
+    is_swapped_ = type[1] == '>';
   }
-}
+
+  std::size_t size() const { return type_.size; }
+  void append(std::span<std::byte> bytes, std::vector<double>& numbers) const {
+    for (; !bytes.empty(); bytes = bytes.subspan(size())) {
+      if (is_swapped_)
+        std::ranges::reverse(bytes.first(size()));
+      numbers.push_back(type_.number(bytes.data()));
+    }
+  }
+
+ private:
+  NumberType type_{};
+  bool is_swapped_ = false;  ///< the most significant byte comes first
+};
 
 }  // namespace
 
@@ -133,7 +163,8 @@ bool is_npy(std::string_view start) {
 std::uint64_t read_npy_rows(mesh_io::InputStream& stream, const std::string& name, RowKind kind,
                             const RowVisitor& visit) {
   const NpyHead head(stream, name);
-  const std::size_t size = size_of_number(head), row_bytes = size * columns_of(kind);
+  const Numbers of_type(head);
+  const std::size_t row_bytes = of_type.size() * columns_of(kind);
   const std::uint64_t rows = rows_of(head, kind);
   std::vector<std::byte> bytes;
   std::vector<double> numbers;
@@ -143,7 +174,7 @@ std::uint64_t read_npy_rows(mesh_io::InputStream& stream, const std::string& nam
     if (const std::size_t there = stream.read(bytes); there < bytes.size())
       head.fail(fmt::format("it ends in row {} of {}", read + there / row_bytes, rows));
     numbers.clear();
-    append_numbers(bytes, size, numbers);
+    of_type.append(bytes, numbers);
     visit(numbers);
     read += count;
   }

@@ -29,8 +29,8 @@ using RowVisitor = std::function<void(std::span<const double> numbers)>;
 ///     text    a row a line, numbers between blanks, commas, semicolons or tabs, as the first line
 ///             has them; between semicolons with decimal commas, too; behind # is a comment. The
 ///             first line may name columns: then those named x y z, and of rays dx dy dz, are
-///             meant, whatever else is there. Else there are no others.
-///     .npy    float32 or float64, little endian, C order, n x 3 or n x 6
+///             meant, each once, whatever else is there. Else there are no others.
+///     .npy    float64, float32 or integers, of either byte order, C order, n x 3 or n x 6
 ///
 /// "nan" and "inf" are numbers. `check` is called now and then and may throw. Throws Error(input)
 /// naming file and line, or row; Error(io).

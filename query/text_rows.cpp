@@ -156,8 +156,10 @@ class Columns {
     if (number_in(fields.front(), separator))
       return false;
     const auto at = [&](std::string_view name) {
-      const auto found = std::ranges::find_if(
-          fields, [&](std::string_view field) { return small_letters(field) == name; });
+      const auto is_it = [&](std::string_view field) { return small_letters(field) == name; };
+      const auto found = std::ranges::find_if(fields, is_it);
+      if (std::ranges::count_if(fields, is_it) > 1)
+        lines.fail(fmt::format("two columns are named {}: rename the one that is not meant", name));
       if (found == fields.end())
         lines.fail(fmt::format("expected numbers, or the names of columns, {} among them; found {}",
                                fmt::join(names_, ", "), shown(fields.front())));

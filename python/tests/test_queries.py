@@ -140,9 +140,12 @@ def test_rows_of_any_kind(torus: str, built: Build) -> None:
     exact = hierarchy.nearest([[1.5, 0.25, 0], [0, 0, 3]]).distances
     assert (hierarchy.nearest(np.array([[1.5, 0.25, 0], [0, 0, 3]], np.float32)).distances == exact).all()
     assert (hierarchy.nearest(np.asfortranarray([[1.5, 0.25, 0], [0, 0, 3]])).distances == exact).all()
+    wide = np.array([[9, 1.5, 9, 0.25, 9, 0], [9, 0, 9, 0, 9, 3]])
+    for others in (wide[:, 1::2], wide[::-1, 5::-2][::-1, ::-1], wide[:, 1::2].astype(">f8"), wide[:, 1::2].astype(">f2"), wide[:, 1::2].tolist()):
+        assert (hierarchy.nearest(others).distances == exact).all()
     assert hierarchy.nearest((0, 0, 3)).distances[0] == exact[1]
     assert hierarchy.nearest(np.array([[0, 0, 3]])).distances[0] == exact[1]
-    assert len(hierarchy.nearest([])) == len(hierarchy.nearest(np.empty((0, 3)))) == 0
+    assert len(hierarchy.nearest([])) == len(hierarchy.nearest(np.empty((0, 3), ">f4"))) == 0
     odd = hierarchy.nearest([[np.nan, 0, 0], [0, 0, 3], [np.inf, 0, 0]])
     assert np.isnan(odd.distances).tolist() == [True, False, True] and odd.triangles[0] == -1 and odd.node(0) is None
     assert np.isnan(hierarchy.rays((0, 0, 9), (0, 0, 0)).distances[0])

@@ -120,6 +120,7 @@ TEST_F(RowsTest, WhatIsWrongIsToldWithItsLine) {
   EXPECT_THAT(failure("x,y\n1,2\n"),
               HasSubstr("line 1: expected numbers, or the names of columns"));
   EXPECT_THAT(failure("x,y,z\n1,2\n"), HasSubstr("line 2: expected a number for z"));
+  EXPECT_THAT(failure("x,y,z,n,n,X\n1,2,3,4,5,6\n"), HasSubstr("line 1: two columns are named x"));
   EXPECT_THAT(failure("1 2 3\n", RowKind::rays), HasSubstr("expected 6 numbers"));
   EXPECT_THAT(failure(std::string(200000, '1')), HasSubstr("the line has more than"));
   EXPECT_THAT(failure(std::string("1 2 3\n\0\1\2\n", 10)), HasSubstr("neither a text"));
@@ -147,13 +148,28 @@ TEST_F(RowsTest, OfAnArrayAreDoublesOrFloats) {
   EXPECT_THAT(read(npy<double>("<f8", "(0, 3)", {})), SizeIs(0));
 }
 
+TEST_F(RowsTest, OfAnArrayAreIntegersOrComeWithTheLargestByteFirst) {
+  EXPECT_THAT(read(npy<std::int8_t>("|i1", "(1, 3)", {-1, 0, 127})), ElementsAre(-1, 0, 127));
+  EXPECT_THAT(read(npy<std::uint16_t>("<u2", "(1, 3)", {65535, 1, 2})), ElementsAre(65535, 1, 2));
+  EXPECT_THAT(read(npy<std::int64_t>("<i8", "(1, 3)", {-1, 1LL << 40, 2})),
+              ElementsAre(-1, 0x1p40, 2));
+  EXPECT_THAT(read(npy<std::uint16_t>(">i2", "(1, 3)", {0x0100, 0xfeff, 0x0201})),
+              ElementsAre(1, -2, 258));
+  EXPECT_THAT(read(npy<std::uint32_t>(">f4", "(1, 3)", {0x0000803f, 0x000080bf, 0})),
+              ElementsAre(1, -1, 0));
+  EXPECT_THAT(read(npy<std::uint64_t>(">f8", "(1, 3)", {0xf03f, 0x9a9999999999b93f, 0xf07f})),
+              ElementsAre(1, 0.1, std::numeric_limits<double>::infinity()));
+}
+
 TEST_F(RowsTest, WhatIsWrongWithAnArrayIsTold) {
   const Numbers six{1, 2, 3, 4, 5, 6};
   EXPECT_THAT(failure(npy("<f8", "(3, 2)", six)),
               HasSubstr("expected an array of n x 3, found (3, 2)"));
   EXPECT_THAT(failure(npy("<f8", "(6,)", six)), HasSubstr("found (6,)"));
   EXPECT_THAT(failure(npy("<f8", "(2, 3)", six), RowKind::rays), HasSubstr("n x 6"));
-  EXPECT_THAT(failure(npy("<i8", "(2, 3)", six)), HasSubstr("found the type '<i8'"));
+  for (const char* type : {"<c16", "|b1", "<U8", "f8", "?f8", "<f2", "<f88"})
+    EXPECT_THAT(failure(npy(type, "(2, 3)", six)),
+                HasSubstr(std::string("found the type '") + type + "'"));
   std::string records = npy("<f8,<f8", "(3,)", six);
   records.replace(records.find("'<f8,<f8'"), 9, "[('x','f8')]");
   EXPECT_THAT(failure(records), HasSubstr("its rows are records: save numpy"));
