@@ -7,10 +7,10 @@
 #include "base/text_mark.h"
 #include "base/trimmed.h"
 #include "execution/size_text.h"
+#include "storage/io/http_token.h"
 #include "storage/io/process.h"
 
 #include <algorithm>
-#include <cctype>
 #include <random>
 #include <ranges>
 #include <sstream>
@@ -30,42 +30,63 @@ void require_header(const std::string& line) {
   const std::size_t colon = line.find(':');
   const std::string name = small_letters(line.substr(0, colon));
   const bool is_address = name == "http" || name == "https";  // misspelt: it is for another host
-  const bool is_name =
-      colon != std::string::npos && !name.empty() && !is_address &&
-      std::ranges::all_of(name, [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
-      });
   const bool is_line = std::ranges::none_of(
       line, [](char c) { return static_cast<unsigned char>(c) < ' ' && c != '\t'; });
-  if (!is_name || !is_line)
-    throw Error(ErrorCode::usage, "--header: expected \"NAME: VALUE\", or @FILE with such lines");
+  if (colon == std::string::npos || is_address || !storage::is_http_token(name) || !is_line) {
+    throw Error(
+        ErrorCode::usage,
+        "--header: expected \"NAME: VALUE\", \"HOST NAME: VALUE\", or @FILE with such lines");
+  }
 }
 
-/// A header, and the address whose host it is for; none: that of the first one that is given.
+/// Whether a word with something behind it names a host, "https://b.org", "b.org", "localhost:80":
+/// a header begins with its name and a colon, or has neither dot nor number there.
+bool is_host(std::string_view word) {
+  const auto begins_port = [](char a, char b) { return a == ':' && b >= '0' && b <= '9'; };
+  if (word.find(':') + 1 == word.size())
+    return false;
+  return storage::is_web_address(word) || word.find('.') != std::string_view::npos ||
+         std::ranges::adjacent_find(word, begins_port) != word.end();
+}
+
+/// A header, and the host that it is for; none: that of the first address that is given.
 struct Header {
-  std::string address, line;
+  std::string host, line;
 };
 
-/// Parses "NAME: VALUE" or "https://HOST NAME: VALUE".
+/// Parses "NAME: VALUE" or "HOST NAME: VALUE". A host before a blank is never taken for a header's
+/// name: what is meant for it would go to another one.
 Header parse_header(const std::string& line) {
-  const std::string text(trimmed(line, " \t"));
-  const std::size_t end = storage::is_web_address(text) ? text.find_first_of(" \t") : 0;
-  const std::size_t begin = text.find_first_not_of(" \t", end);
-  Header header{text.substr(0, end), begin == std::string::npos ? "" : text.substr(begin)};
+  constexpr std::string_view kBlanks = " \t";
+  const std::string_view text = trimmed(line, kBlanks);
+  const std::string_view word = text.substr(0, text.find_first_of(kBlanks));
+  Header header;
+  if (word.size() < text.size() && is_host(word))
+    header.host = word;
+  header.line = trimmed(text.substr(header.host.size()), kBlanks);
   require_header(header.line);
   return header;
+}
+
+/// Whether an address is of that host; of either scheme if it names none.
+bool is_of_host(const std::string& host, const std::string& address) {
+  if (storage::is_web_address(host))
+    return storage::is_same_host(host, address);
+  return storage::is_same_host("http://" + host, address) ||
+         storage::is_same_host("https://" + host, address);
 }
 
 /// Whether the header is for the host of `address`, which is one of `all`.
 bool is_header_for(const Header& header, const std::string& address,
                    const std::vector<std::string>& all) {
-  const auto is_its_host = [&](const std::string& other) {
-    return storage::is_same_host(header.address, other);
-  };
-  if (header.address.empty())
+  if (header.host.empty())
     return storage::is_same_host(all.front(), address);
-  if (std::ranges::none_of(all, is_its_host))
-    throw Error(ErrorCode::usage, "--header: a line is for a host that no address here names");
+  const auto is_its_host = [&](const std::string& other) { return is_of_host(header.host, other); };
+  if (std::ranges::none_of(all, is_its_host)) {
+    throw Error(ErrorCode::usage,
+                "--header: a line is for a host that no address here names; \"NAME: VALUE\" has a "
+                "blank behind the colon");
+  }
   return is_its_host(address);
 }
 

@@ -16,7 +16,8 @@
 namespace meshhier::app {
 
 struct WebOptions {
-  /// "NAME: VALUE", "https://HOST NAME: VALUE", or "@FILE" with such a line each. Each goes to one
+  /// "NAME: VALUE", "HOST NAME: VALUE", or "@FILE" with such a line each. NAME is a token of RFC
+  /// 9110; HOST is a word with a scheme, a dot or a port ("localhost:80"). Each line goes to one
   /// host: the one that it names, else that of the first address.
   std::vector<std::string> headers;
   std::uint64_t bytes_per_second = 0;

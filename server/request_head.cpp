@@ -3,20 +3,13 @@
 #include "base/small_letters.h"
 #include "base/trimmed.h"
 #include "server/line_ends.h"
+#include "storage/io/http_token.h"
 
 #include <algorithm>
 #include <string>
 
 namespace meshhier::server {
 namespace {
-
-/// Whether it is a token of RFC 9110, section 5.6.2.
-bool is_token(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           std::string_view("!#$%&'*+-.^_`|~").find(c) != std::string_view::npos;
-  });
-}
 
 bool has_controls(std::string_view text) {
   return std::any_of(text.begin(), text.end(), [](char c) {
@@ -28,7 +21,7 @@ bool has_controls(std::string_view text) {
 bool is_request_line(std::string_view line) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');
-  if (first == last || !is_token(line.substr(0, first)) || has_controls(line) ||
+  if (first == last || !storage::is_http_token(line.substr(0, first)) || has_controls(line) ||
       line.find('\t') != std::string_view::npos)
     return false;
   const std::string_view target = line.substr(first + 1, last - first - 1);
@@ -59,7 +52,8 @@ struct Header {
 /// Parses a header from a line without its end; returns nothing if it is none.
 std::optional<Header> parse_header(std::string_view line) {
   const std::size_t colon = line.find(':');
-  if (colon == std::string_view::npos || !is_token(line.substr(0, colon)) || has_controls(line))
+  if (colon == std::string_view::npos || !storage::is_http_token(line.substr(0, colon)) ||
+      has_controls(line))
     return std::nullopt;
   return Header{small_letters(line.substr(0, colon)), trimmed(line.substr(colon + 1))};
 }

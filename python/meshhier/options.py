@@ -153,18 +153,23 @@ def _is_true_or(write: Callable[[Any, Files], list[str]]) -> Callable[[Any, File
     return lambda value, files: [] if value is True else write(value, files)
 
 
+# A word that names the host that a header behind it is for: it has a scheme, a dot or a port, and is no name of a header with its colon.
+_HOST = r"(?=[!-~]*(?://|\.|:[0-9]))(?![!-9;-~]+:[ \t])[!-~]+[ \t]+"
+_HEADER = rf"(?!https?:|{_HOST})[!#$%&'*+.^_`|~0-9a-z-]+:[\t -~\x80-\xff]*"
+
+
 def header_lines(headers: Any, before: str = "") -> list[str]:
     """The lines of requests that a mapping or a list of lines stands for; `before`: a pattern of what may begin a line. Raises ValueError
     if one is none; it has no secret."""
     lines = [f"{name}: {value}" for name, value in headers.items()] if isinstance(headers, Mapping) else [headers] if isinstance(headers, str) else list(headers)
-    known = re.compile(before + r"(?!https?:)[a-z0-9_-]+:[\t -~\x80-\xff]*", re.ASCII | re.IGNORECASE)  # no line for another host
+    known = re.compile(before + _HEADER, re.ASCII | re.IGNORECASE)
     if not all(isinstance(line, str) and known.fullmatch(line) for line in lines):
         raise ValueError('names and values of headers, {"Authorization": "Bearer ..."}')
     return lines
 
 
 def _headers(value: Any, files: Files) -> list[str]:
-    lines = header_lines(value, before="(https?://[^ ]+ )?")  # the host that a line is for
+    lines = header_lines(value, before=f"(?:{_HOST})?")
     return ["@" + files.hold("headers.txt", "".join(line + "\n" for line in lines))]  # everybody can read a command line
 
 

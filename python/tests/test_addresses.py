@@ -558,6 +558,7 @@ def test_headers_of_a_comparison_go_to_the_first_host_or_the_one_they_name(host:
             ({"X-Key": "1"}, ({"1"}, {None})),
             ([f"{other.address}/ X-Key: 2"], ({None}, {"2"})),
             ([f"{there} X-Key: 2", "X-Key: 1"], ({"1"}, {"2"})),
+            ([other.address.removeprefix("http://") + " X-Key: 2"], ({None}, {"2"})),
         ]
         for headers, keys in cases:
             meshhier.compare(here, there, headers=headers)
@@ -637,7 +638,7 @@ def test_headers_that_are_none(host: Host, root: Path) -> None:
 
 
 def test_a_line_for_another_host_is_no_header(host: Host) -> None:
-    for line in ("https://example.org X-Key: 1", "HTTP://example.org X-Key: 1", "http:/example.org X-Key: 1"):
+    for line in ("https://example.org X-Key: 1", "HTTP://example.org X-Key: 1", "http:/example.org X-Key: 1", "localhost:80 X-Key: 1"):
         with pytest.raises(meshhier.UsageError, match="headers"):
             meshhier.open(f"{host.address}/a.3tz", headers=[line])
     with pytest.raises(meshhier.UsageError, match="headers"):
