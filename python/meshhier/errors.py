@@ -22,6 +22,16 @@ class ReplacedError(Error):
     """Another build has taken the place of the hierarchy since it was opened: what is left of the two is never put together. Open it again."""
 
 
+#: What comes of bytes and JSON that are not what their reader takes them for.
+MISREAD = (AttributeError, LookupError, OverflowError, RecursionError, TypeError, ValueError)
+_MOST_TOLD = 200  # letters of what a file has where something else belongs
+
+
+def misread(what: str, error: Exception) -> CorruptError:
+    """What is raised where one of MISREAD was."""
+    return CorruptError(f"{what}: {repr(error)[:_MOST_TOLD]}")
+
+
 def replaced(path: str) -> ReplacedError:
     """What is raised where a hierarchy that is open is another one by now."""
     return ReplacedError(f"{path}: another hierarchy has taken its place since it was opened: open it again")

@@ -145,18 +145,17 @@ class Hierarchy:
     @property
     def vertices(self) -> int:
         """Of the input."""
-        return int(self.manifest["source"]["vertices"])
+        return self._manifest.vertices
 
     @property
     def triangles(self) -> int:
         """Of the input."""
-        return int(self.manifest["source"]["triangles"])
+        return self._manifest.triangles
 
     @property
     def bounds(self) -> NDArray[np.float64]:
         """(2, 3): the least and the greatest coordinates of the input."""
-        bounds = self.manifest["source"]["bounds"]
-        return np.array([bounds["min"], bounds["max"]], np.float64)
+        return self._manifest.bounds.copy()
 
     @property
     def origin(self) -> NDArray[np.float64]:

@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 import json
+import operator
 from dataclasses import dataclass, field
 from typing import Any, Optional
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import CorruptError, NotAHierarchyError
+from .errors import MISREAD, CorruptError, NotAHierarchyError, misread
 from .mesh import Conventions
 from .tree import Node, Tree
 
@@ -49,6 +50,8 @@ class Lattice:
 class Manifest:
     """Attributes:
     json: all of it, as the file has it.
+    vertices, triangles: of the input.
+    bounds: (2, 3): the least and the greatest coordinates of the input.
     origin: (3,) float64, to be added to positions of tiles for input coordinates.
     tree: of its partitions.
     attributes: "normals", "alpha", "texcoords", "colours", ...: what the input has.
@@ -61,6 +64,9 @@ class Manifest:
     """
 
     json: dict[str, Any] = field(repr=False)
+    vertices: int
+    triangles: int
+    bounds: NDArray[np.float64]
     origin: NDArray[np.float64]
     tree: Tree
     attributes: dict[str, Any]
@@ -77,6 +83,15 @@ class Manifest:
         group = node.index // 10000 * 10000 if self.json["format_version"] > 6 else 0
         folder = f"tiles/{node.level:02}/" + (f"{group:06}/" if group else "")
         return f"{folder}{node.index:06}.glb"
+
+
+def _point(value: Any) -> NDArray[np.float64]:
+    """Three numbers."""
+    return np.array(value, np.float64).reshape(3)
+
+
+def _attributes(said: dict[str, Any]) -> dict[str, Any]:
+    return {**said, **{name: said[name] for name in ("normals", "colours", "alpha", "texcoords")}}
 
 
 def _scalar(value: dict[str, Any]) -> Scalar:
@@ -96,29 +111,32 @@ def read_manifest(data: bytes, path: str) -> Manifest:
     """Of `hierarchy.json`. Raises NotAHierarchyError, CorruptError."""
     try:
         text = json.loads(data)
-    except ValueError as error:
+    except (RecursionError, ValueError) as error:
         raise CorruptError(f"{path}: hierarchy.json: {error}") from error
     if not isinstance(text, dict) or text.get("format") != "meshhier":
         raise NotAHierarchyError(f"{path}: hierarchy.json is of something else")
     if text.get("format_version") not in _VERSIONS:
         raise NotAHierarchyError(
-            f"{path}: format version {text.get('format_version')}; this package reads {_VERSIONS[0]} to {_VERSIONS[-1]}"
+            f"{path}: format version {str(text.get('format_version'))[:20]}; this package reads {_VERSIONS[0]} to {_VERSIONS[-1]}"
         )
     try:
         source = text["source"]
         lattice = text["storage"]["positions"]
         return Manifest(
             json=text,
-            origin=np.asarray(text["origin"], np.float64),
-            tree=Tree(text["partitions"]),
-            attributes=source["attributes"],
+            vertices=int(source["vertices"]),
+            triangles=int(source["triangles"]),
+            bounds=np.array([_point(source["bounds"][end]) for end in ("min", "max")]),
+            origin=_point(text["origin"]),
+            tree=Tree(operator.index(text["partitions"])),
+            attributes=_attributes(source["attributes"]),
             scalars=[_scalar(value) for value in source.get("values", [])],
-            lattice=Lattice(np.asarray(lattice["corner"], np.float64), lattice["step"]) if lattice else None,
+            lattice=Lattice(_point(lattice["corner"]), float(lattice["step"])) if lattice else None,
             is_textured="textures" in source,
             conventions=_conventions(text),
             index_bytes=int(text["index"]["bytes"]),
             index_checksum=int(text["index"]["checksum"], 16),
             build=str(text["checksum"]),
         )
-    except (KeyError, TypeError, ValueError) as error:
-        raise CorruptError(f"{path}: hierarchy.json: {error!r}") from error
+    except MISREAD as error:
+        raise misread(f"{path}: hierarchy.json", error) from error

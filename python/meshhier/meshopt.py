@@ -11,6 +11,7 @@ from .errors import CorruptError
 _GROUP = 16  # bytes of one column that share a header
 _BLOCK_BYTES = 8192
 _MOST_IN_BLOCK = 256
+_MOST_FOLD = 4 * _GROUP  # bytes of attributes for one that is packed: a header of four groups that are all 0
 _MOST_ELEMENTS = 1 << 24  # of a section of a tile
 
 
@@ -26,7 +27,7 @@ def decode(data: bytes, mode: str, filter_name: str, count: int, stride: int) ->
         elif mode == "INDICES":
             numbers = _indices(data, count)
         else:
-            raise CorruptError(f"meshopt: unknown mode {mode}")
+            raise CorruptError(f"meshopt: unknown mode {mode!r:.40}")
         return np.asarray(numbers, np.uint32).astype(np.uint16 if stride == 2 else np.uint32).tobytes()
     except (IndexError, OverflowError, ValueError) as error:
         raise CorruptError(f"meshopt: damaged data: {error}") from error
@@ -36,7 +37,7 @@ def _filtered(values: NDArray[np.uint8], name: str) -> bytes:
     if name in ("", "NONE"):
         return values.tobytes()
     if name != "EXPONENTIAL":
-        raise CorruptError(f"meshopt: unknown filter {name}")
+        raise CorruptError(f"meshopt: unknown filter {name!r:.40}")
     numbers = np.frombuffer(values.tobytes(), "<i4")
     exponents = numbers >> 24
     mantissas = (numbers << 8) >> 8
@@ -46,6 +47,8 @@ def _filtered(values: NDArray[np.uint8], name: str) -> bytes:
 def _attributes(data: NDArray[np.uint8], count: int, stride: int) -> NDArray[np.uint8]:
     if data[0] != 0xA0:
         raise CorruptError("meshopt: not attributes of version 0")
+    if count * stride > len(data) * _MOST_FOLD:
+        raise CorruptError(f"meshopt: {count} elements of {stride} bytes are not in {len(data)} bytes")
     result = np.empty((count, stride), np.uint8)
     last = data[len(data) - stride :].copy()
     block = min((_BLOCK_BYTES // stride) & ~(_GROUP - 1), _MOST_IN_BLOCK)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .checksum import checksum
 from .content import ByContent
-from .errors import CorruptError
+from .errors import MISREAD, CorruptError, misread
 from .letter_table import LETTER_TABLE
 from .words import AskedWord, Letters, fits, objects_of_row
 
@@ -137,8 +137,8 @@ class ObjectTable(Sequence[ObjectRow]):
             directory = facts["directory"]
             self._directory = int(directory["bytes"]), int(directory["checksum"], 16)
             self.properties: dict[str, str] = {entry["name"]: entry["type"] for entry in facts["properties"]}
-        except (KeyError, TypeError, ValueError) as error:
-            raise CorruptError(f"{path}: hierarchy.json: objects: {error!r}") from error
+        except MISREAD as error:
+            raise misread(f"{path}: hierarchy.json: objects", error) from error
         if any(kind not in _TYPES for kind in self.properties.values()):
             raise CorruptError(f"{path}: hierarchy.json: objects: a property has an unknown type")
 
@@ -317,7 +317,9 @@ class ObjectTable(Sequence[ObjectRow]):
         with_box = columns.marked(count)
         corners = np.array([columns.numbers(len(with_box), "<f8") for _ in range(6)]).T.reshape(-1, 2, 3)
         boxes = dict(zip(with_box, corners))
-        triangles, areas = columns.numbers(count, "<u8"), columns.numbers(count, "<f8")
+        triangles, areas = columns.numbers(count, "<i8"), columns.numbers(count, "<f8")
+        if min(triangles) < 0:
+            raise columns.fail("an object has fewer than no triangles")
         values = {name: self._read_values(columns, kind, count) for name, kind in self.properties.items()}
         columns.finish()
         return _Rows(names, [

@@ -174,8 +174,12 @@ def _unpack_file(files: Archive, name: str, folder: str) -> None:
     if not re.fullmatch(r"[!-\[\]-~]{1,255}", name) or {"", ".", ".."} & set(name.split("/")):
         raise CorruptError(f"{name!r} is no name of a file in an archive")
     path = os.path.join(folder, *name.split("/"))
-    os.makedirs(os.path.dirname(path), exist_ok=True)
-    with open(path, "xb") as file:
+    try:
+        os.makedirs(os.path.dirname(path), exist_ok=True)
+        file = open(path, "xb")
+    except (FileExistsError, NotADirectoryError):
+        raise CorruptError(f"{name!r} is twice in the archive, or a file and a folder") from None
+    with file:
         file.write(files.read(name))
 
 

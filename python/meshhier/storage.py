@@ -11,6 +11,12 @@ from typing import Any, Iterable, Protocol
 from .errors import CorruptError, NotAHierarchyError, UsageError
 
 
+#: What `zipfile` raises of archives that are none.
+_BROKEN = (zipfile.BadZipFile, NotImplementedError, ValueError, EOFError, struct.error)
+_MOST_BYTES = 1 << 63
+_PACKED = 1 << 0 | 1 << 5 | 1 << 6  # flags of a file: encrypted, patched, strongly encrypted
+
+
 class Files(Protocol):
     """Files by their names within the hierarchy, such as "tiles/00/000000.glb"."""
 
@@ -85,7 +91,9 @@ class Archive:
     def _open(self) -> None:
         try:
             self._zip = self._read_directory()
-        except (zipfile.BadZipFile, NotImplementedError, ValueError, EOFError, struct.error) as error:
+            if not all(facts.filename and 0 <= facts.header_offset < _MOST_BYTES for facts in self._zip.infolist()):
+                raise zipfile.BadZipFile("a file in it has no name, or a place that no file has")
+        except _BROKEN as error:
             raise NotAHierarchyError(f"{self._path}: not an archive: {error}; a hierarchy is a folder NAME.hier or an archive NAME.3tz") from error
         self._process = os.getpid()
 
@@ -103,14 +111,14 @@ class Archive:
         self.require_open()
         try:
             facts = self._zip.getinfo(name)
-            if facts.compress_type != zipfile.ZIP_STORED or facts.flag_bits & 1:
+            if facts.compress_type != zipfile.ZIP_STORED or facts.flag_bits & _PACKED:
                 raise CorruptError(f"{self._path}: {name} is packed or encrypted; in a 3tz nothing is")
             with self._zip.open(facts) as file:
                 file.seek(begin)
                 return file.read(end - begin if end >= 0 else -1)
         except KeyError as error:
             raise CorruptError(f"{self._path}: {name} is missing") from error
-        except (zipfile.BadZipFile, EOFError) as error:
+        except _BROKEN as error:
             raise CorruptError(f"{self._path}: {name}: {error}") from error
 
     def expect(self, files: Iterable[tuple[str, int]]) -> None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from . import meshopt
 from .content import ByContent
-from .errors import CorruptError, Error
+from .errors import MISREAD, CorruptError, Error, misread
 from .tree import Node
 
 if TYPE_CHECKING:
@@ -126,7 +126,7 @@ class _Glb:
             bin_bytes, kind = struct.unpack_from("<I4s", data, 20 + json_bytes)
             if kind != b"BIN\0":
                 raise CorruptError(f"{name}: not a glTF binary")
-        except (struct.error, ValueError) as error:
+        except struct.error as error:
             raise CorruptError(f"{name}: {error}") from error
         self.bin = data[28 + json_bytes : 28 + json_bytes + bin_bytes]
 
@@ -324,5 +324,5 @@ def read_tile(data: bytes, node: Node, manifest: Manifest) -> Tile:
     """Decodes the file of a tile. Raises CorruptError."""
     try:
         return _Reader(data, node, manifest).read()
-    except (KeyError, TypeError, IndexError, ValueError) as error:
-        raise CorruptError(f"{manifest.tile_name(node)}: {error!r}") from error
+    except MISREAD as error:
+        raise misread(manifest.tile_name(node), error) from error

@@ -3,14 +3,21 @@
 
 from __future__ import annotations
 
+import copy
+import functools
+import json
+import operator
 import shutil
+import struct
 from pathlib import Path
-from typing import Any
+from typing import Any, Callable, Iterator
 
 import numpy as np
 import pytest
 
 import meshhier
+from meshhier.manifest import read_manifest
+from meshhier.tile import read_tile
 
 
 def test_it_tells_what_it_is(torus: str, built: Any) -> None:
@@ -92,6 +99,71 @@ def test_damage_is_an_error_of_its_own(compression: str, torus: str, built: Any,
     name.unlink()
     with pytest.raises(meshhier.CorruptError, match="missing"):
         hierarchy.cut(level=1)
+
+
+def _places(value: Any, place: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Where something stands in JSON; of lists the first."""
+    if place:
+        yield place
+    keys = list(value) if isinstance(value, dict) else range(min(len(value), 1)) if isinstance(value, list) else []
+    for key in keys:
+        yield from _places(value[key], (*place, key))
+
+
+def _forged(text: Any) -> Iterator[bytes]:
+    """JSON with something else at each place, or nothing."""
+    for *way, last in _places(text):
+        for wrong in (None, 2**70, 1.5, "x" * 5000, {}, ...):
+            forged = copy.deepcopy(text)
+            place = functools.reduce(operator.getitem, way, forged)
+            if wrong is ...:
+                del place[last]
+            else:
+                place[last] = wrong
+            yield json.dumps(forged).encode()
+    yield b"[" * 100_000
+
+
+def _refused(read: Callable[[], object]) -> int:
+    """1 if it is refused, in few words; 0 if it is read."""
+    try:
+        read()
+    except (meshhier.CorruptError, meshhier.NotAHierarchyError) as error:
+        assert len(str(error)) < 600
+        return 1
+    return 0
+
+
+@pytest.mark.filterwarnings("ignore:invalid value")
+@pytest.mark.parametrize("compression", ["none", "meshopt"])
+def test_a_tile_that_lies_is_refused(compression: str, torus: str, built: Any) -> None:
+    place = Path(built(torus, f"{compression}.hier", storage__compression=compression))
+    manifest = read_manifest((place / "hierarchy.json").read_bytes(), "a.hier")
+    data = (place / "tiles" / "01" / "000000.glb").read_bytes()
+    end = 20 + int.from_bytes(data[12:16], "little")
+
+    def glb(text: bytes) -> bytes:
+        return struct.pack("<4sIIII", b"glTF", 2, 20 + len(text) + len(data) - end, len(text), 0x4E4F534A) + text + data[end:]
+
+    assert read_tile(data, meshhier.Node(1, 0), manifest) == read_tile(glb(data[20:end]), meshhier.Node(1, 0), manifest)
+    assert sum(_refused(lambda: read_tile(glb(text), meshhier.Node(1, 0), manifest)) for text in _forged(json.loads(data[20:end]))) > 200
+
+
+def test_a_manifest_that_lies_is_refused(tiny: str, built: Any, tmp_path: Path) -> None:
+    """What is opened says what it is."""
+    place = tmp_path / "a.hier"
+    shutil.copytree(built(tiny, "tiny.hier"), place)
+    text = (place / "hierarchy.json").read_bytes()
+
+    def tell() -> str:
+        with meshhier.open(place) as hierarchy:
+            return f"{hierarchy} {hierarchy.bounds} {hierarchy.origin} {hierarchy.errors} {hierarchy.scalars} {hierarchy.read_tile((0, 0))}"
+
+    refused = 0
+    for forged in _forged(json.loads(text)):
+        (place / "hierarchy.json").write_bytes(forged)
+        refused += _refused(tell)
+    assert refused > 100
 
 
 def test_what_others_call_it(torus: str, built: Any) -> None:

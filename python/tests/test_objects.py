@@ -118,6 +118,8 @@ def test_names_that_begin_alike_are_found() -> None:
 def test_damaged_blocks_are_refused(change: Callable[[bytes], bytes]) -> None:
     with pytest.raises(meshhier.CorruptError):
         table([row(i) for i in range(5)], change)[0]
+    with pytest.raises(meshhier.CorruptError, match="fewer than no triangles"):
+        table([{**row(0), "triangles": 2**63}])[0]
 
 
 def test_a_hierarchy_without_objects_has_none(torus: str, built: Callable[..., str]) -> None:

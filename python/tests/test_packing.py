@@ -5,6 +5,8 @@ from __future__ import annotations
 
 import os
 import shutil
+import struct
+import warnings
 import zipfile
 from pathlib import Path
 from typing import Any, Callable
@@ -106,6 +108,46 @@ def test_archives_that_want_to_write_elsewhere(name: str, torus: str, built: Any
     with pytest.raises(meshhier.CorruptError, match="no name"):
         meshhier.unpack(evil, tmp_path / "a.hier")
     assert os.listdir(tmp_path) == ["evil.3tz"] and not (tmp_path.parent / "out").exists()
+
+
+def _with_flag(data: bytearray, flag: int) -> None:
+    """Sets a flag of the first file in the directory."""
+    data[data.index(b"PK\1\2") + 8] |= flag
+
+
+def _with_place(data: bytearray, _: int) -> None:
+    """Lets the directory begin a byte later, so that all files would begin before."""
+    end = data.rindex(b"PK\5\6") + 16
+    struct.pack_into("<I", data, end, struct.unpack_from("<I", data, end)[0] + 1)
+
+
+def _without_name(data: bytearray, _: int) -> None:
+    at = data.index(b"PK\1\2")
+    data[at : at + 60] = data[at : at + 28] + bytes(2) + (14).to_bytes(2, "little") + data[at + 32 : at + 60]
+
+
+@pytest.mark.parametrize("change, value", [(_with_flag, 1), (_with_flag, 32), (_with_flag, 64), (_with_place, 0), (_without_name, 0)])
+def test_directories_that_lie(change: Any, value: int, torus: str, built: Any, tmp_path: Path) -> None:
+    data = bytearray(Path(built(torus, "packing0.3tz")).read_bytes())
+    change(data, value)
+    (tmp_path / "a.3tz").write_bytes(data)
+    with pytest.raises((meshhier.CorruptError, meshhier.NotAHierarchyError)):
+        meshhier.unpack(tmp_path / "a.3tz", tmp_path / "a.hier")
+    assert os.listdir(tmp_path) == ["a.3tz"]
+
+
+@pytest.mark.parametrize("name", ["hierarchy.json", "tiles", "tiles.bin/x"])
+def test_names_that_are_in_an_archive_twice(name: str, torus: str, built: Any, tmp_path: Path) -> None:
+    twice = tmp_path / "a.3tz"
+    shutil.copy(built(torus, "packing0.3tz"), twice)
+    with zipfile.ZipFile(twice) as archive:
+        data = archive.read("hierarchy.json")
+    with zipfile.ZipFile(twice, "a") as archive, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        archive.writestr(name, data)
+    with pytest.raises(meshhier.CorruptError, match="twice"):
+        meshhier.unpack(twice, tmp_path / "a.hier")
+    assert os.listdir(tmp_path) == ["a.3tz"]
 
 
 def test_an_archive_on_the_web(torus: str, built: Any, tmp_path: Path) -> None:
