@@ -178,7 +178,7 @@ class HttpClient:
                 if len(answer.data) + len(chunk) > most:
                     raise NetworkError(f"{address.shown}: {_TOO_LARGE if answer.is_whole else 'the host sent more than the part that was asked for'}")
                 answer.data += chunk
-        except (OSError, http.client.HTTPException) as error:
+        except (OSError, OverflowError, http.client.HTTPException) as error:
             raise _Passing(_reason(error)) from None
 
     # One request.
@@ -278,6 +278,8 @@ def _reason(error: Exception) -> str:
         return f"the host was silent for {SILENCE:g} s"
     if isinstance(error, http.client.IncompleteRead):
         return "the answer broke off"
+    if isinstance(error, (OverflowError, http.client.BadStatusLine, http.client.UnknownProtocol)) and not isinstance(error, ConnectionError):
+        return "what answers does not speak HTTP"
     return getattr(error, "strerror", None) or str(error) or type(error).__name__
 
 

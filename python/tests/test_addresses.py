@@ -446,14 +446,15 @@ def test_more_than_was_asked_for(host: Host, root: Path) -> None:
         meshhier.open(f"{host.address}/a.3tz")
 
 
-def test_garbage_is_no_answer(host: Host) -> None:
+@pytest.mark.parametrize("line", [b"\0\1\2 no HTTP", b"\x1b[31mred", b"HTTP/\x1b[31m 200 OK", b"HTTP/1.1 206 Part\r\nContent-Range: bytes 0-9/10\r\nTransfer-Encoding: chunked"])
+def test_garbage_is_no_answer(line: bytes, host: Host) -> None:
     def garbage(handler: Any) -> bool:
-        handler.wfile.write(b"\0\1\2 no HTTP\r\n\r\n")
+        handler.wfile.write(line + b"\r\n\r\nfffffffffffffffff\r\nx")
         handler.close_connection = True
         return True
 
     host.reply = garbage
-    with pytest.raises(meshhier.NetworkError, match="5 times"):
+    with pytest.raises(meshhier.NetworkError, match="does not speak HTTP, 5 times"):
         meshhier.open(f"{host.address}/a.3tz")
 
 
