@@ -27,7 +27,7 @@ describe('about a model', () => {
 
   it('there is what else is known', () => {
     const textures = { images: 3, missingImages: 1 };
-    expect(facts({ licence: 'CC0', source: { ...MANIFEST.source, textures } }, { modified: 1_790_000_000 })).toMatchObject({
+    expect(facts({ licence: 'CC0', source: { ...MANIFEST.source, textures } }, { modified: new Date(2026, 8, 21).getTime() / 1000 })).toMatchObject({
       Licence: 'CC0', Colours: '3 pictures, 1 of them missing', Made: 'Sep 21, 2026',
     });
   });
