@@ -122,8 +122,6 @@ class HttpClient:
             raise UsageError(f"headers: expected {error}") from None
         self._headers = [(name, value.strip()) for name, _, value in (line.partition(":") for line in lines)]
         self._connections = Connections(SILENCE)
-        self.requests: int = 0  # so far, failed ones included
-        self.bytes: int = 0
 
     def close(self) -> None:
         self._connections.close()
@@ -174,7 +172,6 @@ class HttpClient:
         """Appends the body. Bytes that have come stay where it breaks off."""
         try:
             while chunk := _next_bytes(response):
-                self.bytes += len(chunk)
                 if len(answer.data) + len(chunk) > most:
                     raise NetworkError(f"{address.shown}: {_TOO_LARGE if answer.is_whole else 'the host sent more than the part that was asked for'}")
                 answer.data += chunk
@@ -226,7 +223,6 @@ class HttpClient:
                 for name, value in {**headers, **of_proxy}.items():
                     connection.putheader(name, value)
                 connection.endheaders()
-                self.requests += 1
                 return connection.getresponse(), connection
             except BaseException as error:
                 connection.close()
