@@ -55,6 +55,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Build:
         keys = {key.replace("__", "."): value for key, value in settings.items()}
         if "partition.count" not in keys:
             keys.setdefault("partition.vertices", 700)
+        keys.setdefault("preview", False)  # half of the time that such a build takes
         content = (mesh, Path(name).suffix, repr(sorted(keys.items())))
         assert names.setdefault(path, content) == content, f"{name} is another hierarchy in another test"
         made = known.setdefault(content, path)

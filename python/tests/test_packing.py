@@ -17,7 +17,7 @@ from host import Host
 import meshhier
 from meshhier import packing
 
-FORMS: list[dict[str, object]] = [{}, {"partition__vertices": 60}, {"storage__compression": "meshopt_zlib", "preview": False}]
+FORMS: list[dict[str, object]] = [{}, {"partition__vertices": 60, "preview": True}, {"storage__compression": "meshopt_zlib"}]
 
 
 def files_of(folder: Path) -> dict[str, bytes]:

@@ -169,7 +169,7 @@ def steps(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.mark.parametrize("up", ["y", "z"])
 def test_borders_through_corners_and_along_edges(up: str, steps: str, built: Any, tmp_path: Path) -> None:
-    hierarchy = meshhier.open(built(steps, f"steps_{up}.hier", up=up, partition__vertices=150, preview="false"))
+    hierarchy = meshhier.open(built(steps, f"steps_{up}.hier", up=up, partition__vertices=150))
     random, least = np.random.default_rng(9), 0 if up == "z" else -4
     taken = 0
     for number in range(16):

@@ -41,11 +41,11 @@ def test_its_examples_run_and_are_right(meshgen: str, tmp_path: Path, monkeypatc
     make = [meshgen, "surface", "--shape", "torus", "--triangles", "135000", "--normals", "--colours", "-o", "david.ply"]
     subprocess.run(make, check=True, stdout=subprocess.DEVNULL)
     make_david(tmp_path / "david.ply")
-    meshhier.build("david.ply", "scan.3tz").close()
+    meshhier.build("david.ply", "scan.3tz", settings={"preview": False}).close()
     subprocess.run([meshgen, "city", "--buildings", "300", "-o", "city.obj"], check=True, stdout=subprocess.DEVNULL)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", meshhier.BuildWarning)
-        meshhier.build("city.obj", "city.hier", settings={"objects.table": "city.csv", "partition.vertices": 400}).close()
+        meshhier.build("city.obj", "city.hier", settings={"objects.table": "city.csv", "partition.vertices": 400, "preview": False}).close()
     for module in ("trimesh", "pyvista", "open3d"):
         if importlib.util.find_spec(module) is None:
             monkeypatch.setitem(sys.modules, module, MagicMock())
