@@ -50,9 +50,6 @@ void add_serve_command(CLI::App& parser, Invocation& invocation);
 void add_plan_command(CLI::App& parser, Invocation& invocation);
 void add_task_command(CLI::App& parser, Invocation& invocation);
 void add_clean_command(CLI::App& parser, Invocation& invocation);
-/// What the shells' scripts call, with the words of a line behind "--".
-inline constexpr std::string_view kComplete = "complete";
-
 /// These two tell of all commands that `parser` has when they run.
 void add_completion_command(CLI::App& parser, Invocation& invocation);
 void add_manual_command(CLI::App& parser, Invocation& invocation);

@@ -13,14 +13,15 @@ namespace meshhier::app {
 
 namespace {
 
-// Each script asks "meshhier complete -- WORD..." at every Tab. The first line of the answer is
-// "files" or "words"; then come lines of a word, a tab, and its meaning.
+// Each script asks "meshhier complete meshhier WORD..." at every Tab, with the words up to the
+// cursor. The first line of the answer is "files" or "words"; then come lines of a word, a tab, and
+// its meaning.
 
 constexpr const char* kBash = R"(# Completion of meshhier in bash.
 _meshhier() {
-  local kind word typed= head= words=() files=() i
+  local kind word typed= head= words=("$1") files=() i
   for ((i = 1; i <= COMP_CWORD; ++i)); do  # bash splits words at "="
-    if ((${#words[@]})) && [[ ${COMP_WORDS[i]} == = || ${COMP_WORDS[i - 1]} == = ]]; then
+    if ((i > 1)) && [[ ${COMP_WORDS[i]} == = || ${COMP_WORDS[i - 1]} == = ]]; then
       words[-1]+=${COMP_WORDS[i]}
     else
       words+=("${COMP_WORDS[i]}")
@@ -32,7 +33,7 @@ _meshhier() {
   {
     read -r kind
     while IFS=$'\t' read -r word _; do COMPREPLY+=("${word#"$head"}"); done
-  } < <("$1" complete -- "${words[@]}" 2>/dev/null)
+  } < <("$1" complete "${words[@]}" 2>/dev/null)
   [[ ${COMPREPLY[0]-} != *= ]] || compopt -o nospace
   if [[ $kind == files ]]; then
     mapfile -t files < <(compgen -f -- "${typed#"$head"}")
@@ -48,7 +49,7 @@ constexpr const char* kZsh = R"(#compdef meshhier
 _meshhier() {
   local line
   local -a lines ready open
-  lines=("${(@f)$("${(Q)words[1]}" complete -- "${(@Q)words[2,CURRENT]}" 2>/dev/null)}")
+  lines=("${(@f)$("${(Q)words[1]}" complete "${(@Q)words[1,CURRENT]}" 2>/dev/null)}")
   for line in "${(@)lines[2,-1]}"; do
     line=${${line//:/\\:}/$'\t'/:}
     if [[ ${line%%:*} == *= ]]; then open+=("$line"); else ready+=("$line"); fi
@@ -66,7 +67,7 @@ if [[ $funcstack[1] == _meshhier ]]; then _meshhier "$@"; else compdef _meshhier
 constexpr const char* kFish = R"(# Completion of meshhier in fish.
 function __meshhier_complete
   set -l words (commandline -opc)
-  set -l answer ($words[1] complete -- $words[2..-1] (commandline -ct) 2>/dev/null)
+  set -l answer ($words[1] complete $words (commandline -ct) 2>/dev/null)
   printf '%s\n' $answer[2..-1]
   if test "$answer[1]" = files
     set -l typed (commandline -ct)
@@ -96,16 +97,17 @@ void print(const Completion& completion, std::ostream& out) {
     out << word << '\t' << meaning << '\n';
 }
 
-/// Adds the command that the scripts call; it is of no use to people.
+/// Adds the command that the scripts call; it is of no use to people. All that follows the first
+/// word, the program's name, is left as it is, options too.
 void add_complete_command(CLI::App& parser, Invocation& invocation) {
-  const auto words = std::make_shared<std::vector<std::string>>();
-  CLI::App* command =
-      parser.add_subcommand(std::string(kComplete), "Answer a shell's completion script");
-  command->group("");
-  command->add_option("WORD", *words);
-  command->callback([words, &parser, &invocation] {
-    invocation.run = [words, &parser](Environment& environment) {
-      print(complete(parser, *words), environment.out);
+  CLI::App* command = parser.add_subcommand("complete", "Answer a shell's completion script");
+  command->group("")->prefix_command();
+  command->callback([command, &parser, &invocation] {
+    std::vector<std::string> words = command->remaining();
+    if (!words.empty())
+      words.erase(words.begin());
+    invocation.run = [words = std::move(words), &parser](Environment& environment) {
+      print(complete(parser, words), environment.out);
       return 0;
     };
   });

@@ -241,13 +241,11 @@ int execute_guarded(const Invocation& invocation, const execution::CancelToken& 
 }
 
 /// Returns the arguments as the parser takes them, the last one first. What stands behind "--" is a
-/// file, which the parser would take for an option if one of several values stands before; only a
-/// shell that asks for completions has the words of its line there.
+/// file, which the parser would take for an option if one of several values stands before.
 std::vector<std::string> words_of(std::span<char* const> arguments) {
   std::vector<std::string> words(arguments.begin() + 1, arguments.end());
-  const bool are_files = words.front() != kComplete;
   for (auto word = std::find(words.begin(), words.end(), "--"); word != words.end(); ++word) {
-    if (are_files && word->starts_with('-') && *word != "-" && *word != "--")
+    if (word->starts_with('-') && *word != "-" && *word != "--")
       word->insert(0, "./");
   }
   std::ranges::reverse(words);

@@ -57,7 +57,7 @@ Lines lines_of(const std::string& text) {
 
 /// "files" or "words", then the words that the program suggests.
 Lines answer_to(const std::string& words) {
-  Lines lines = lines_of(output_of(MESHHIER_BINARY " complete -- " + words));
+  Lines lines = lines_of(output_of(MESHHIER_BINARY " complete meshhier " + words));
   for (std::string& line : lines)
     line.resize(std::min(line.find('\t'), line.size()));
   return lines;
