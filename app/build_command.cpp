@@ -5,6 +5,7 @@
 #include "app/command.h"
 #include "app/options.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -56,6 +57,18 @@ void add_batch_options(CLI::App& command, BuildArguments& arguments) {
       ->needs(each);
 }
 
+/// Adds FILE and -o.
+void add_places(CLI::App& command, BuildArguments& arguments) {
+  command
+      .add_option("FILE", arguments.named, "A mesh, several meshes that are joined, or a config")
+      ->check(name_fault);
+  command
+      .add_option("-o,--output", arguments.output,
+                  "The hierarchy to make: a directory, or one file if it ends in .3tz")
+      ->type_name("PATH")
+      ->check(name_fault);
+}
+
 /// Adds --set, and options of their own for keys that are set often.
 void add_key_options(CLI::App& command, BuildArguments& arguments) {
   command
@@ -85,6 +98,19 @@ void add_key_options(CLI::App& command, BuildArguments& arguments) {
   }
 }
 
+/// Adds --force, --restart and --verbose.
+void add_build_flags(CLI::App& command, BuildArguments& arguments) {
+  command.add_flag("--force", arguments.force, "Replace an existing output");
+  command.add_flag("--restart", arguments.restart,
+                   "Throw away what an earlier build of this output, which was stopped, had done");
+  command  // for `serve --watch`
+      .add_flag("--restart-other", arguments.restart_other,
+                "Does so only if that is of another config or input")
+      ->group("");
+  command.add_flag("--verbose", arguments.verbose,
+                   "Also print what each stage took of time, memory and disk");
+}
+
 /// Adds --no-links and --within.
 void add_input_rules(CLI::App& command, BuildArguments& arguments) {
   CLI::Option* no_links =
@@ -98,21 +124,31 @@ void add_input_rules(CLI::App& command, BuildArguments& arguments) {
       ->excludes(no_links);
 }
 
-/// Adds --stats and --input-note.
-void add_file_options(CLI::App& command, BuildArguments& arguments, CLI::Option* dry_run) {
+/// Adds --dry-run and --update.
+void add_judgements(CLI::App& command, BuildArguments& arguments) {
+  command.add_flag("--dry-run", arguments.dry_run,
+                   "Read only the mesh's header (or import it to count it); "
+                   "tell what the build would make and take, or why it "
+                   "would refuse");
   command
-      .add_option("--stats", arguments.stats,
-                  "Write what each stage took of time, memory and disk, as JSON")
-      ->type_name("FILE")
-      ->check(name_fault)
-      ->excludes(dry_run);
-  command
-      .add_option("--input-note", arguments.input_note,
-                  "Write which files were read, with sizes, times and checksums, and which were "
-                  "missing, as JSON")
-      ->type_name("FILE")
-      ->check(name_fault)
-      ->excludes(dry_run);
+      .add_flag("--update", arguments.update,
+                "Build only if the output is not of this input, config and program; it is "
+                "replaced then, as with --force")
+      ->excludes(command.get_option("--force"));
+}
+
+/// Adds --json, --stats and --input-note.
+void add_accounts(CLI::App& command, BuildArguments& arguments) {
+  CLI::Option* const dry_run = command.get_option("--dry-run");
+  command.add_flag("--json", arguments.json, "With --dry-run: one JSON object, for programs")
+      ->needs(dry_run);
+  const auto add = [&](const char* name, std::string& file, const char* help) {
+    command.add_option(name, file, help)->type_name("FILE")->check(name_fault)->excludes(dry_run);
+  };
+  add("--stats", arguments.stats, "Write what each stage took of time, memory and disk, as JSON");
+  add("--input-note", arguments.input_note,
+      "Write which files were read, with sizes, times and checksums, and which were missing, as "
+      "JSON");
 }
 
 /// Adds --help-config and --help-formats.
@@ -141,60 +177,36 @@ void check_batch(const CLI::App& command, const BuildArguments& arguments) {
     throw CLI::RequiredError("FILE");
 }
 
+/// Returns what the arguments ask for. Throws for those that do not go together.
+std::function<int(Environment&)> chosen_run(const CLI::App& command,
+                                            const std::shared_ptr<BuildArguments>& arguments,
+                                            const Invocation& invocation) {
+  if (const auto reference = reference_of(*arguments); reference != nullptr) {
+    return [reference](Environment& environment) {
+      environment.out << reference();
+      return 0;
+    };
+  }
+  give_back_files(arguments->settings, arguments->named);
+  check_batch(command, *arguments);
+  return [arguments, &invocation](Environment& environment) {
+    return run_build(*arguments, invocation.progress, environment);
+  };
+}
+
 }  // namespace
 
 void add_build_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<BuildArguments>();
   CLI::App* command = parser.add_subcommand("build", "Make a hierarchy from a mesh");
-  command
-      ->add_option("FILE", arguments->named, "A mesh, several meshes that are joined, or a config")
-      ->check(name_fault);
-  command
-      ->add_option("-o,--output", arguments->output,
-                   "The hierarchy to make: a directory, or one file if it ends in .3tz")
-      ->type_name("PATH")
-      ->check(name_fault);
-  add_key_options(*command, *arguments);
-  CLI::Option* force = command->add_flag("--force", arguments->force, "Replace an existing output");
-  command->add_flag("--restart", arguments->restart,
-                    "Throw away what an earlier build of this output, which was stopped, had done");
-  command  // for `serve --watch`
-      ->add_flag("--restart-other", arguments->restart_other,
-                 "Does so only if that is of another config or input")
-      ->group("");
-  command->add_flag("--verbose", arguments->verbose,
-                    "Also print what each stage took of time, memory and disk");
-  add_input_rules(*command, *arguments);
-  CLI::Option* dry_run =
-      command->add_flag("--dry-run", arguments->dry_run,
-                        "Read only the mesh's header (or import it to count it); "
-                        "tell what the build would make and take, or why it "
-                        "would refuse");
-  command
-      ->add_flag("--update", arguments->update,
-                 "Build only if the output is not of this input, config and program; it is "
-                 "replaced then, as with --force")
-      ->excludes(force);
-  add_batch_options(*command, *arguments);
-  command->add_flag("--json", arguments->json, "With --dry-run: one JSON object, for programs")
-      ->needs(dry_run);
-  add_file_options(*command, *arguments, dry_run);
-  add_references(*command, *arguments);
+  for (const auto add :
+       {add_places, add_key_options, add_build_flags, add_input_rules, add_judgements,
+        add_batch_options, add_accounts, add_references})  // in this order in the help
+    add(*command, *arguments);
   add_progress_option(*command, invocation.progress);
   command->footer(build_footer());
   command->callback([arguments, command, &invocation] {
-    if (const auto reference = reference_of(*arguments); reference != nullptr) {
-      invocation.run = [reference](Environment& environment) {
-        environment.out << reference();
-        return 0;
-      };
-      return;
-    }
-    give_back_files(arguments->settings, arguments->named);
-    check_batch(*command, *arguments);
-    invocation.run = [arguments, &invocation](Environment& environment) {
-      return run_build(*arguments, invocation.progress, environment);
-    };
+    invocation.run = chosen_run(*command, arguments, invocation);
   });
 }
 
