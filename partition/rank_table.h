@@ -31,6 +31,14 @@ struct RankedCopy {
   WedgeRank rank{};
 };
 
+/// What rank_copies() sorts by: here, so that a sort is compiled once for all of its callers.
+struct CopyFirst {
+  std::uint32_t operator()(const CopyVertex& copy) const { return copy.first; }
+};
+struct RankedCopyId {
+  std::uint32_t operator()(const RankedCopy& copy) const { return copy.id; }
+};
+
 /// Finds the ranks of copies. for_each(visit) calls visit(copy) for all of them in the order of
 /// ids; rank_of(first) tells the rank of a place by its first vertex, in ascending order;
 /// take(ranked copy) is called for each in the order of ids. O(n log n), by sorting in
@@ -38,15 +46,9 @@ struct RankedCopy {
 template <class ForEach, class RankOf, class Take>
 void rank_copies(const ForEach& for_each, const RankOf& rank_of, storage::ScratchFile& scratch,
                  std::uint64_t memory_bytes, const Take& take) {
-  struct ByFirst {
-    std::uint32_t operator()(const CopyVertex& copy) const { return copy.first; }
-  };
-  struct ById {
-    std::uint32_t operator()(const RankedCopy& copy) const { return copy.id; }
-  };
-  ExternalSort<RankedCopy, ById> by_id(scratch, memory_bytes / 2);
+  ExternalSort<RankedCopy, RankedCopyId> by_id(scratch, memory_bytes / 2);
   {
-    ExternalSort<CopyVertex, ByFirst> by_first(scratch, memory_bytes / 2);
+    ExternalSort<CopyVertex, CopyFirst> by_first(scratch, memory_bytes / 2);
     for_each([&](const CopyVertex& copy) { by_first.add(copy); });
     by_first.sort();
     by_first.for_each_block([&](std::span<const CopyVertex> block) {
