@@ -6,7 +6,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
-#include <iterator>
 #include <type_traits>
 #include <utility>
 
@@ -20,15 +19,16 @@ static_assert(std::endian::native == std::endian::little, "a .npy is written as 
 
 constexpr std::size_t kFlushBytes = std::size_t{1} << 20;
 
-/// Appends a value as a CSV has it, behind a comma.
+/// Appends a value as a CSV has it, behind a comma. (fmt::format_to() would compile all of fmt's
+/// formatting here.)
 void append_text(std::string& to, double value) {
-  fmt::format_to(std::back_inserter(to), ",{}", value);
+  to += fmt::format(",{}", value);
 }
 void append_text(std::string& to, std::int64_t value) {
-  fmt::format_to(std::back_inserter(to), ",{}", value);
+  to += fmt::format(",{}", value);
 }
 void append_text(std::string& to, const Vec3d& value) {
-  fmt::format_to(std::back_inserter(to), ",{},{},{}", value.x, value.y, value.z);
+  to += fmt::format(",{},{},{}", value.x, value.y, value.z);
 }
 
 template <class Value>

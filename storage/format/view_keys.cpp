@@ -2,6 +2,7 @@
 
 #include "base/number_text.h"
 #include "hierarchy/scalar_value.h"
+#include "storage/io/json_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -450,7 +451,8 @@ Json value_json(const ViewKey& key, const ModelView& view) {
 std::optional<ViewProblem> problem_between_keys(const ModelView& view) {
   if (!view.cut.empty() && !view.box.empty())
     return ViewProblem{"box", "\"cut\" or \"box\", not both"};
-  if (const std::size_t bytes = view_json(view).dump().size(); bytes > kMostViewBytes)
+  if (const std::size_t bytes = json_text(view_json(view), {.throws = true}).size();
+      bytes > kMostViewBytes)
     return ViewProblem{"", fmt::format("at most {} bytes in all, found {}: name fewer objects",
                                        kMostViewBytes, bytes)};
   return std::nullopt;
