@@ -9,6 +9,7 @@
 #include "hierarchy/object_row.h"
 #include "pipeline/build.h"
 #include "storage/io/output_file.h"
+#include "storage/io/web_address.h"
 
 #include <algorithm>
 #include <functional>

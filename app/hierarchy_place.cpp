@@ -9,6 +9,7 @@
 #include "execution/size_text.h"
 #include "storage/io/http_token.h"
 #include "storage/io/process.h"
+#include "storage/io/web_address.h"
 
 #include <algorithm>
 #include <random>

@@ -7,8 +7,8 @@
 #include "base/error.h"
 #include "export/page_file.h"
 #include "server/static_site.h"
-#include "storage/io/http_client.h"
 #include "storage/io/paths.h"
+#include "storage/io/web_address.h"
 
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "app/parser_walk.h"
 
-#include "storage/io/http_client.h"
+#include "storage/io/web_address.h"
 
 #include <algorithm>
 #include <array>

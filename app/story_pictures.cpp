@@ -5,6 +5,7 @@
 #include "server/url_path.h"
 #include "storage/io/folder.h"
 #include "storage/io/http_client.h"
+#include "storage/io/web_address.h"
 
 #include <algorithm>
 #include <chrono>

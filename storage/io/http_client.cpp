@@ -1,9 +1,8 @@
 #include "storage/io/http_client.h"
 
 #include "base/error.h"
-#include "base/number_text.h"
-#include "base/small_letters.h"
-#include "base/trimmed.h"
+#include "storage/io/http_head.h"
+#include "storage/io/web_address.h"
 
 #include <algorithm>
 #include <chrono>
@@ -56,75 +55,6 @@ bool may_pass(long status) {
   return status == 408 || status == 425 || status == 429 || (status >= 500 && status != 501);
 }
 
-/// What may be around the value of a header.
-constexpr std::string_view kBlanks = " \t\r\n";
-
-constexpr auto whole_number = parse_number<std::uint64_t>;
-
-/// Parses a length in bytes; nothing if no file can be so long.
-std::optional<std::uint64_t> file_length(std::string_view text) {
-  const std::optional<std::uint64_t> value = whole_number(text);
-  return value && *value <= static_cast<std::uint64_t>(INT64_MAX) ? value : std::nullopt;
-}
-
-bool is_number(std::string_view text) {
-  return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
-}
-
-/// The header of an answer, the last one where redirects make several.
-struct Head {
-  std::string etag;
-  std::string modified;
-  std::optional<std::uint64_t> first;  ///< offset in Content-Range
-  std::optional<std::uint64_t> total;
-  std::optional<std::uint64_t> length;
-  std::string impossible;    ///< a length that no file has
-  std::size_t bytes = 0;     ///< size of the header so far
-  bool is_complete = false;  ///< all of it has come
-
-  void add(std::string_view line) {
-    if (line.starts_with("HTTP/")) {
-      *this = {};
-      return;
-    }
-    const std::size_t colon = line.find(':');
-    if (colon == std::string_view::npos)
-      return;
-    const std::string name = small_letters(line.substr(0, colon));
-    const std::string_view value = trimmed(line.substr(colon + 1), kBlanks);
-    if (name == "etag")
-      etag = value.starts_with("W/") ? value.substr(2) : value;
-    else if (name == "last-modified")
-      modified = value;
-    else if (name == "content-length")
-      length = length_of(value);
-    else if (name == "content-range")
-      add_range(value);
-  }
-
-  std::string version() const { return etag.empty() ? modified : etag; }
-
- private:
-  std::optional<std::uint64_t> length_of(std::string_view text) {
-    const auto found = file_length(text);
-    if (!found && is_number(text))
-      impossible = text.substr(0, 40);
-    return found;
-  }
-
-  /// Takes "bytes 0-99/1234", or "bytes */1234" where the file ends before the part.
-  void add_range(std::string_view value) {
-    constexpr std::string_view kUnit = "bytes ";
-    const std::size_t slash = value.find('/');
-    if (!value.starts_with(kUnit) || slash == std::string_view::npos)
-      return;
-    total = length_of(value.substr(slash + 1));
-    const std::size_t dash = value.find('-');
-    if (dash != std::string_view::npos && dash < slash)
-      first = whole_number(value.substr(kUnit.size(), dash - kUnit.size()));
-  }
-};
-
 /// One request on its way.
 struct Transfer {
   CURL* handle = nullptr;
@@ -132,23 +62,20 @@ struct Transfer {
   std::uint64_t first = 0, count = 0;
   HttpAnswer& answer;
   std::uint64_t before = 0;  ///< bytes of earlier tries in the answer
-  Head head;
+  HttpHead head;
   bool is_too_much = false;
   std::exception_ptr thrown;
 };
 
 std::size_t take_header(char* data, std::size_t size, std::size_t count, void* to) {
-  Head& head = static_cast<Transfer*>(to)->head;
-  const std::string_view line(data, size * count);
-  head.add(line);
-  head.bytes += line.size();
-  head.is_complete = trimmed(line, kBlanks).empty();
-  return head.bytes > kMostHead ? 0 : line.size();
+  HttpHead& head = static_cast<Transfer*>(to)->head;
+  head.add({data, size * count});
+  return head.bytes > kMostHead ? 0 : size * count;
 }
 
 /// Whether the header is too large to be taken. For one long line libcurl hands over nothing and
 /// only fails.
-bool is_head_too_large(const Head& head, CURLcode code) {
+bool is_head_too_large(const HttpHead& head, CURLcode code) {
   return head.bytes > kMostHead ||
          (!head.is_complete && (code == CURLE_OUT_OF_MEMORY || code == kLineTooLong));
 }
@@ -221,39 +148,6 @@ const char* other_authorities() {
   return nullptr;
 }
 
-/// An address in its parts.
-class UrlParts {
- public:
-  explicit UrlParts(const std::string& url) : url_(curl_url(), curl_url_cleanup) {
-    if (url_ == nullptr)
-      throw std::bad_alloc();
-    is_valid_ = curl_url_set(url_.get(), CURLUPART_URL, url.c_str(), 0) == CURLUE_OK;
-  }
-
-  /// Returns a part as it is meant, without %20; nothing if there is none.
-  std::optional<std::string> part(CURLUPart part) const {
-    char* text = nullptr;
-    if (!is_valid_ ||
-        curl_url_get(url_.get(), part, &text, CURLU_URLDECODE | CURLU_DEFAULT_PORT) != CURLUE_OK)
-      return std::nullopt;
-    const std::unique_ptr<char, void (*)(void*)> owned(text, curl_free);
-    return std::string(text);
-  }
-
-  /// Returns scheme, host and port, "https://example.org:443"; nothing if it is no address.
-  std::optional<std::string> origin() const {
-    const auto host = part(CURLUPART_HOST);
-    if (!host)
-      return std::nullopt;
-    return fmt::format("{}://{}:{}", part(CURLUPART_SCHEME).value_or(""), small_letters(*host),
-                       part(CURLUPART_PORT).value_or(""));
-  }
-
- private:
-  std::unique_ptr<CURLU, void (*)(CURLU*)> url_;
-  bool is_valid_ = false;
-};
-
 /// Sets libcurl up, once a process, before there are threads that use it.
 void set_up() {
   static const CURLcode code = curl_global_init(CURL_GLOBAL_DEFAULT);
@@ -324,10 +218,10 @@ class HttpClient::Connection {
   /// Asks, and follows redirects. libcurl would take all headers but Authorization and Cookie to
   /// any host.
   CURLcode perform(const HttpAddress& address, Transfer& transfer) {
-    const UrlParts own(address.url);
+    const WebAddressParts own = address_parts(address.url);
     std::string url = address.url;
     for (int redirects = 0; redirects <= kMostRedirects; ++redirects) {
-      introduce(own, UrlParts(url).origin() == own.origin());
+      introduce(own, address_parts(url).origin == own.origin);
       const CURLcode code = ask(url, transfer);
       const char* target = nullptr;
       curl_easy_getinfo(handle_, CURLINFO_REDIRECT_URL, &target);
@@ -339,11 +233,10 @@ class HttpClient::Connection {
   }
 
   /// Gives headers, and the address's user and password, to its own host alone.
-  void introduce(const UrlParts& own, bool is_own) {
-    const auto user = own.part(CURLUPART_USER), password = own.part(CURLUPART_PASSWORD);
+  void introduce(const WebAddressParts& own, bool is_own) {
     set(CURLOPT_HTTPHEADER, is_own ? headers_.get() : nullptr);
-    set(CURLOPT_USERNAME, is_own && user ? user->c_str() : nullptr);
-    set(CURLOPT_PASSWORD, is_own && password ? password->c_str() : nullptr);
+    set(CURLOPT_USERNAME, is_own && own.user ? own.user->c_str() : nullptr);
+    set(CURLOPT_PASSWORD, is_own && own.password ? own.password->c_str() : nullptr);
   }
 
   CURLcode ask(const std::string& url, Transfer& transfer) {
@@ -364,21 +257,9 @@ class HttpClient::Connection {
   /// Returns a failure that may pass, in words, or nothing if all is there; throws what will not
   /// pass.
   std::string settle(const HttpAddress& address, Transfer& transfer, CURLcode code) {
+    require_sound(address, transfer, code);
     HttpAnswer& answer = transfer.answer;
     const long status = status_of(handle_);
-    if (is_head_too_large(transfer.head, code))
-      fail(address,
-           fmt::format("the header of the host's answer has more than {} bytes", kMostHead));
-    if (!transfer.head.impossible.empty())
-      fail(address, fmt::format("the host says that it has {} bytes, as no file has",
-                                transfer.head.impossible));
-    if (transfer.is_too_much && answer.is_whole) {
-      fail(address, fmt::format("the host sends files whole, but no parts of them (HTTP ranges), "
-                                "and this one has more than {} bytes",
-                                kMostWhole));
-    }
-    if (transfer.is_too_much)
-      fail(address, "the host sent more than the part that was asked for");
     // The bytes that have come stay, however it broke off: the next try must know of which file it
     // is.
     const bool has_begun = transfer.head.is_complete && (status == kWhole || status == kPart);
@@ -390,11 +271,27 @@ class HttpClient::Connection {
       return {};
     }
     if (status != kWhole && status != kPart)
-      return refused(address, status);
+      return passing(address, may_pass(status), refusal(status));
     if (status == kPart && transfer.head.first.value_or(transfer.first) != transfer.first)
       fail(address, "the host sent another part than was asked for");
     note(address, transfer, status);
     return code == CURLE_OK ? std::string() : failed(address, code);
+  }
+
+  static void require_sound(const HttpAddress& address, const Transfer& transfer, CURLcode code) {
+    if (is_head_too_large(transfer.head, code))
+      fail(address,
+           fmt::format("the header of the host's answer has more than {} bytes", kMostHead));
+    if (!transfer.head.impossible.empty())
+      fail(address, fmt::format("the host says that it has {} bytes, as no file has",
+                                transfer.head.impossible));
+    if (transfer.is_too_much && transfer.answer.is_whole) {
+      fail(address, fmt::format("the host sends files whole, but no parts of them (HTTP ranges), "
+                                "and this one has more than {} bytes",
+                                kMostWhole));
+    }
+    if (transfer.is_too_much)
+      fail(address, "the host sent more than the part that was asked for");
   }
 
   void note(const HttpAddress& address, const Transfer& transfer, long status) {
@@ -406,19 +303,18 @@ class HttpClient::Connection {
     answer.total = status == kWhole ? transfer.head.length : transfer.head.total;
   }
 
-  std::string failed(const HttpAddress& address, CURLcode code) {
-    const std::string what = code == CURLE_PEER_FAILED_VERIFICATION
-                                 ? "its certificate is not valid, so nobody knows who answers"
-                                 : std::string(curl_easy_strerror(code));
-    if (!may_pass(code))
-      fail(address, what);
-    return what;
+  static std::string failed(const HttpAddress& address, CURLcode code) {
+    return passing(address, may_pass(code),
+                   code == CURLE_PEER_FAILED_VERIFICATION
+                       ? "its certificate is not valid, so nobody knows who answers"
+                       : curl_easy_strerror(code));
   }
 
-  std::string refused(const HttpAddress& address, long status) {
-    if (!may_pass(status))
-      fail(address, refusal(status));
-    return refusal(status);
+  /// Returns a failure that may pass, throws another one.
+  static std::string passing(const HttpAddress& address, bool may_pass, std::string what) {
+    if (!may_pass)
+      fail(address, what);
+    return what;
   }
 
   /// Calls `attempt` until it returns no failure, waiting longer each time.
@@ -533,16 +429,6 @@ std::optional<HttpAnswer> HttpClient::find(const HttpAddress& address, std::uint
   if (!lease.connection().get(address, first, count, answer))
     return std::nullopt;
   return answer;
-}
-
-bool is_same_host(const std::string& a, const std::string& b) {
-  const auto origin = UrlParts(a).origin();
-  return origin && origin == UrlParts(b).origin();
-}
-
-bool is_web_address(std::string_view text) {
-  const std::string scheme = small_letters(text.substr(0, text.find('/')));
-  return (scheme == "http:" || scheme == "https:") && text.substr(scheme.size()).starts_with("//");
 }
 
 }  // namespace meshhier::storage

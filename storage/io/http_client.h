@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace meshhier::storage {
@@ -76,11 +75,5 @@ class HttpClient {
   struct Idle;
   std::unique_ptr<Idle> idle_;
 };
-
-/// Whether scheme, host and port of two addresses are the same; false for what is no address.
-bool is_same_host(const std::string& a, const std::string& b);
-
-/// Whether a text is the address of something on the web.
-bool is_web_address(std::string_view text);
 
 }  // namespace meshhier::storage

@@ -257,7 +257,7 @@ const std::vector<ThirdParty>& third_parties() {
       {"boost/", of({"export/plan_region.cpp"})},
       {"benchmark/", in({"bench"})},
       {"proj.h", of({"geodesy/proj_library.h"})},
-      {"curl/", of({"storage/io/http_client.cpp"})},
+      {"curl/", of({"storage/io/http_client.cpp", "storage/io/web_address.cpp"})},
       {"md5.h", of({"storage/io/hash.cpp"})},
       {"xxhash.h", of({"storage/io/hash.cpp"})},
       {"png.h", in({"images"})},

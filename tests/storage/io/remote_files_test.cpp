@@ -1,6 +1,7 @@
 #include "storage/io/remote_files.h"
 
 #include "base/error.h"
+#include "storage/io/web_address.h"
 #include "tests/support/http_host.h"
 
 #include <algorithm>
