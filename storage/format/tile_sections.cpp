@@ -1,10 +1,7 @@
 #include "storage/format/tile_sections.h"
 
-#include "base/error.h"
 #include "hierarchy/value_channels.h"
-#include "hierarchy/vertex_numbers.h"
-#include "storage/format/glb.h"
-#include "storage/format/tile_glb.h"
+#include "storage/format/section_triangles.h"
 #include "storage/format/tile_values.h"
 
 #include <algorithm>
@@ -28,78 +25,17 @@ Copies take_copies(VertexArray& vertices, std::vector<std::uint32_t> places) {
   return copies;
 }
 
-/// Three lists with an element for each triangle: its places, the wedges there if there are copies,
-/// and its corners with splits if there are any.
-struct TriangleLists {
-  std::vector<TileTriangle>& places;
-  std::vector<CornerWedges>& wedges;
-  std::vector<TileTriangle>& shaded;
-
-  CornerWedges wedges_at(std::size_t t) const {
-    return wedges.empty() ? CornerWedges{} : wedges[t];
-  }
-  Wedge corner(std::size_t t, std::size_t c) const { return {raw(places[t][c]), wedges_at(t)[c]}; }
-  std::pair<TileTriangle, CornerWedges> key(std::size_t t) const {
-    return {places[t], wedges_at(t)};
-  }
-};
-
-/// The elements of one triangle.
-struct ShadedTriangle {
-  TileTriangle places;
-  CornerWedges wedges;
-  TileTriangle shaded;
-  friend auto operator<=>(const ShadedTriangle&, const ShadedTriangle&) = default;
-};
-
-/// Returns a triangle turned so that the smallest corner comes first. Requires that no vertex is
-/// there twice.
-ShadedTriangle smallest_first(const TriangleLists& lists, std::size_t t) {
-  Triangle<std::uint64_t> corners;
-  for (std::size_t c = 0; c < 3; ++c) {
-    const Wedge corner = lists.corner(t, c);
-    corners[c] = std::uint64_t{corner.place} << 32 | corner.wedge;
-  }
-  const std::size_t first = smallest_corner(corners);
-  return {turned(lists.places[t], first), turned(lists.wedges_at(t), first),
-          turned(lists.shaded[t], first)};
-}
-
-/// Does what normalize_triangles() does, and turns and moves all lists alike.
-void normalize(const TriangleLists& lists) {
-  if (lists.shaded.empty())
-    return normalize_triangles(lists.places, lists.wedges, false);
-  std::vector<ShadedTriangle> sorted;
-  for (std::size_t t = 0; t < lists.places.size(); ++t)
-    sorted.push_back(smallest_first(lists, t));
-  std::sort(sorted.begin(), sorted.end());
-  for (std::size_t t = 0; t < sorted.size(); ++t) {
-    lists.places[t] = sorted[t].places;
-    lists.shaded[t] = sorted[t].shaded;
-    if (!lists.wedges.empty())
-      lists.wedges[t] = sorted[t].wedges;
-  }
-}
-
-class Reader {
+class Reader : SectionReader {
  public:
-  Reader(const TileSections& sections, const Tree& tree, const std::string& name)
-      : plan_(sections.plan),
-        colours_(plan_.colours()),
-        bin_(sections.bin),
-        is_packed_(sections.is_packed),
-        tree_(tree),
-        name_(name) {}
+  using SectionReader::SectionReader;
 
   std::vector<Vec3f> positions() const {
     const Section& section = plan_[TilePart::position];
     std::vector<Vec3f> positions(plan_.shape().vertices());
     for (std::size_t v = 0; v < positions.size(); ++v) {
       positions[v] = position(section, v);
-      if (!std::isfinite(positions[v].x) || !std::isfinite(positions[v].y) ||
-          !std::isfinite(positions[v].z)) {
+      if (!is_finite(positions[v]))
         fail(fmt::format("position of vertex {} is not finite", v));
-      }
       if (plan_.lattice() && plan_.lattice()->nearest(positions[v]) != positions[v])
         fail(fmt::format("position of vertex {} is not on the lattice", v));
     }
@@ -123,9 +59,9 @@ class Reader {
     shading.split_of = splits();
     check_split_features(shading.split_of);
     const VertexNumbers numbers(static_cast<std::uint32_t>(shape.places()), mesh.copies.places);
-    read_triangles(TilePart::interior, numbers, shading.split_of,
+    read_triangles(*this, TilePart::interior, numbers, shading.split_of,
                    {mesh.interior, mesh.interior_wedges, shading.interior});
-    read_triangles(TilePart::border, numbers, shading.split_of,
+    read_triangles(*this, TilePart::border, numbers, shading.split_of,
                    {mesh.border, mesh.border_wedges, shading.border});
     tile.parent_map = parent_map();
     tile.image = image();
@@ -136,16 +72,6 @@ class Reader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& what) const {
-    throw Error(ErrorCode::corrupt, name_ + ": " + what);
-  }
-
-  template <Scalar T>
-  T get(const Section& section, std::size_t element, std::size_t component = 0) const {
-    return load_little<T>(bin_.data() + section.offset + element * section.stride +
-                          component * sizeof(T));
-  }
-
   std::vector<float> attributes() const {
     const auto channels = static_cast<std::size_t>(plan_.layout().channels());
     std::vector<float> attributes(plan_.shape().vertices() * channels);
@@ -276,17 +202,28 @@ class Reader {
 
   /// Returns the computed normals of vertices and splits.
   std::vector<NormalCode> normals() const {
-    const Section& section = plan_[TilePart::normal];
-    std::vector<NormalCode> normals(plan_.shape().computed_normals ? section.count : 0);
-    for (std::size_t v = 0; v < normals.size(); ++v) {
+    return plan_.shape().computed_normals ? codes(TilePart::normal, "normal", is_normal_code, "0")
+                                          : std::vector<NormalCode>();
+  }
+  /// Returns the tangents for the normal map, of vertices and splits.
+  std::vector<TangentCode> tangents() const {
+    return codes(TilePart::tangent, "tangent", is_tangent_code, "127 or -127");
+  }
+  /// Reads three numbers of a direction and a fourth, which `is_sound` checks.
+  template <class Code>
+  std::vector<Code> codes(TilePart part, const char* what, bool (*is_sound)(const Code&),
+                          const char* fourth) const {
+    const Section& section = plan_[part];
+    std::vector<Code> codes(section.count);
+    for (std::size_t v = 0; v < codes.size(); ++v) {
       for (std::size_t i = 0; i < 4; ++i)
-        normals[v][i] = static_cast<std::int8_t>(get<std::uint8_t>(section, v, i));
-      if (!is_normal_code(normals[v])) {
-        fail(fmt::format("the normal of vertex {} is ({}, {}, {}, {}), expected unit length and 0",
-                         v, normals[v][0], normals[v][1], normals[v][2], normals[v][3]));
+        codes[v][i] = static_cast<std::int8_t>(get<std::uint8_t>(section, v, i));
+      if (!is_sound(codes[v])) {
+        fail(fmt::format("the {} of vertex {} is ({}, {}, {}, {}), expected unit length and {}",
+                         what, v, codes[v][0], codes[v][1], codes[v][2], codes[v][3], fourth));
       }
     }
-    return normals;
+    return codes;
   }
 
   /// Returns the coordinates in the tile's picture, of vertices and splits.
@@ -302,22 +239,6 @@ class Reader {
       }
     }
     return texcoords;
-  }
-
-  /// Returns the tangents for the normal map, of vertices and splits.
-  std::vector<TangentCode> tangents() const {
-    const Section& section = plan_[TilePart::tangent];
-    std::vector<TangentCode> tangents(section.count);
-    for (std::size_t v = 0; v < tangents.size(); ++v) {
-      for (std::size_t i = 0; i < 4; ++i)
-        tangents[v][i] = static_cast<std::int8_t>(get<std::uint8_t>(section, v, i));
-      if (!is_tangent_code(tangents[v])) {
-        fail(fmt::format(
-            "the tangent of vertex {} is ({}, {}, {}, {}), expected unit length and 127 or -127", v,
-            tangents[v][0], tangents[v][1], tangents[v][2], tangents[v][3]));
-      }
-    }
-    return tangents;
   }
 
   /// Returns the coordinates in the tile's normal map, of vertices and splits.
@@ -378,24 +299,6 @@ class Reader {
     return section.count == 0
                ? std::span<const std::byte>()
                : bin_.subspan(section.offset + number * section.stride, section.stride);
-  }
-
-  /// Reads triangles into `lists`, where they begin with their smallest corner and ascend, by place
-  /// and wedge. They must be so in the file, unless it is packed.
-  void read_triangles(TilePart part, const VertexNumbers& numbers,
-                      std::span<const std::uint32_t> split_of, const TriangleLists& lists) const {
-    lists.shaded = numbered_triangles(part);
-    lists.places = without_splits(part, lists.shaded, split_of);
-    if (split_of.empty())
-      lists.shaded.clear();
-    if (plan_.shape().copies > 0)
-      lists.wedges = numbers.split(lists.places);
-    if (is_packed_)
-      normalize(lists);
-    for (std::size_t t = 0; t < lists.places.size(); ++t) {
-      check_order(part, t, lists);
-      check_corners(part, t, lists.places[t]);
-    }
   }
 
   std::vector<std::uint16_t> parent_map() const {
@@ -495,74 +398,6 @@ class Reader {
     return colours_.number(stored, channel);
   }
 
-  std::uint32_t number(const Section& section, std::size_t element) const {
-    return section.component == kU16 ? get<std::uint16_t>(section, element)
-                                     : get<std::uint32_t>(section, element);
-  }
-
-  /// Returns triangles whose corners are numbers of vertices and splits.
-  std::vector<TileTriangle> numbered_triangles(TilePart part) const {
-    const Section& section = plan_[part];
-    std::vector<TileTriangle> triangles(section.count / 3);
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint32_t index = number(section, 3 * t + c);
-        if (index >= plan_.shape().with_splits()) {
-          fail(fmt::format("index {} of {} triangle {} is not below the {} vertices", index,
-                           key_of(part), t, plan_.shape().with_splits()));
-        }
-        triangles[t][c] = static_cast<TileVertex>(index);
-      }
-    }
-    return triangles;
-  }
-
-  /// Returns the triangles with the vertices of splits; checks that each has three different ones.
-  std::vector<TileTriangle> without_splits(TilePart part, std::vector<TileTriangle> triangles,
-                                           std::span<const std::uint32_t> split_of) const {
-    const std::uint64_t vertex_count = plan_.shape().vertices();
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (TileVertex& corner : triangles[t]) {
-        if (raw(corner) >= vertex_count)
-          corner = static_cast<TileVertex>(split_of[raw(corner) - vertex_count]);
-      }
-      if (is_degenerate(triangles[t]))
-        fail_triangle(part, t, triangles[t], "has a vertex twice");
-    }
-    return triangles;
-  }
-
-  void check_order(TilePart part, std::size_t t, const TriangleLists& lists) const {
-    if (lists.corner(t, 1) < lists.corner(t, 0) || lists.corner(t, 2) < lists.corner(t, 0) ||
-        (t > 0 && lists.key(t) < lists.key(t - 1)))
-      fail_triangle(part, t, lists.places[t], "is turned or out of order");
-    if (t > 0 && !lists.shaded.empty() && lists.key(t) == lists.key(t - 1) &&
-        lists.shaded[t] != lists.shaded[t - 1])
-      fail_triangle(part, t, lists.places[t], "has other splits than the equal one before it");
-  }
-
-  void check_corners(TilePart part, std::size_t t, const TileTriangle& triangle) const {
-    if (is_degenerate(triangle) && !tree_.is_partition(plan_.shape().node))
-      fail_triangle(part, t, triangle, "has a place twice, above the partitions");
-    std::uint64_t own = 0, boundary = 0;
-    for (const TileVertex corner : triangle) {
-      own += raw(corner) < plan_.shape().own ? 1 : 0;
-      boundary += raw(corner) < plan_.shape().boundary ? 1 : 0;
-    }
-    const bool fits =
-        part == TilePart::interior ? own == 3 : own == boundary && (own == 1 || own == 2);
-    if (!fits) {
-      fail(fmt::format("{} triangle {} has {} own corners, {} of them on the boundary",
-                       key_of(part), t, own, boundary));
-    }
-  }
-
-  [[noreturn]] void fail_triangle(TilePart part, std::size_t t, const TileTriangle& triangle,
-                                  const char* what) const {
-    fail(fmt::format("{} triangle {} ({}, {}, {}) {}", key_of(part), t, raw(triangle[0]),
-                     raw(triangle[1]), raw(triangle[2]), what));
-  }
-
   std::vector<std::uint16_t> short_list(TilePart part, const char* what) const {
     const Section& section = plan_[part];
     std::vector<std::uint16_t> list(section.count);
@@ -576,12 +411,7 @@ class Reader {
     return list;
   }
 
-  const TilePlan& plan_;
-  TileColours colours_;
-  std::span<const std::byte> bin_;
-  bool is_packed_;
-  const Tree& tree_;
-  const std::string& name_;
+  TileColours colours_ = plan_.colours();
 };
 
 }  // namespace

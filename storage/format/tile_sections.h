@@ -3,22 +3,12 @@
 
 #include "base/vec.h"
 #include "hierarchy/published.h"
-#include "hierarchy/tree.h"
-#include "storage/format/tile_plan.h"
+#include "storage/format/section_reader.h"
 
-#include <cstddef>
-#include <span>
 #include <string>
 #include <vector>
 
 namespace meshhier::storage {
-
-/// The sections of a tile: bytes that nobody vouches for, as many as the plan says.
-struct TileSections {
-  const TilePlan& plan;
-  std::span<const std::byte> bin;
-  bool is_packed = false;  ///< triangles are as the codec gave them, turned and in another order
-};
 
 // Both throw Error(corrupt) that starts with `name`.
 
