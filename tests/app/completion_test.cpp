@@ -213,8 +213,8 @@ class ShellTest : public ::testing::TestWithParam<Shell> {
   ShellTest() {
     std::string name = (std::filesystem::temp_directory_path() / "meshhier-shell-XXXXXX").string();
     home_ = ::mkdtemp(name.data());
-    write("bin/meshhier", "#!/bin/sh\n[ \"$1\" = complete ] && exec " MESHHIER_BINARY
-                          " \"$@\"\necho \"$#:\" \"$@\" END\n");
+    write("bin/meshhier", "#!/bin/sh\n[ \"$1\" = complete ] && exec '" MESHHIER_BINARY
+                          "' \"$@\"\necho \"$#:\" \"$@\" END\n");
     std::filesystem::permissions(home_ / "bin/meshhier", std::filesystem::perms::owner_all);
     write("a mesh.json", "");
   }

@@ -70,8 +70,8 @@ class DocumentedCommands : public CommandLine {
   std::string answer_to(const std::string& call) const {
     const std::string place = "'" + (work() / "empty").string() + "'";
     const std::string line = "rm -rf " + place + "; mkdir " + place + "; cd " + place +
-                             "; HOME=$PWD; meshhier() { timeout 60 " MESHHIER_BINARY
-                             " \"$@\"; }; { " +
+                             "; HOME=$PWD; meshhier() { timeout 60 '" MESHHIER_BINARY
+                             "' \"$@\"; }; { " +
                              call + "\n} 2>&1 </dev/null";
     std::FILE* pipe = ::popen(line.c_str(), "r");
     std::string text;

@@ -33,7 +33,7 @@ TEST_F(Limited, AFolderForTemporaryFilesThatIsNotThereIsNamed) {
   const Outcome outcome = run_after("TMPDIR=/nonexistent; export TMPDIR", {"compare", mesh, mesh});
   EXPECT_EQ(outcome.code, kIo);
   EXPECT_THAT(outcome.messages, AllOf(HasSubstr("/nonexistent (TMPDIR)"), HasSubstr("set TMPDIR")));
-  const Outcome file = run_after("TMPDIR=" + mesh + "; export TMPDIR", {"compare", mesh, mesh});
+  const Outcome file = run_after("TMPDIR='" + mesh + "'; export TMPDIR", {"compare", mesh, mesh});
   EXPECT_EQ(file.code, kIo);
   EXPECT_THAT(file.messages, HasSubstr("is no directory"));
 }

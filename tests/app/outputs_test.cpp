@@ -135,10 +135,10 @@ TEST_F(CommandLine, ANoteReplacesNotesAlone) {
 TEST_F(CommandLine, AClosedStandardOutputTakesNothing) {
   build();
   const std::string ply = (work() / "x.ply").string();
-  const std::string command = std::string(MESHHIER_BINARY) + " export " + hierarchy() +
-                              " --level 0 --progress none 2>/dev/null >&- -o ";
-  EXPECT_EQ(WEXITSTATUS(std::system((command + "-").c_str())), kIo);
-  EXPECT_EQ(WEXITSTATUS(std::system((command + ply).c_str())), kIo);  // the summary is lost
+  const std::string command = "'" MESHHIER_BINARY "' export '" + hierarchy() +
+                              "' --level 0 --progress none 2>/dev/null >&- -o '";
+  EXPECT_EQ(WEXITSTATUS(std::system((command + "-'").c_str())), kIo);
+  EXPECT_EQ(WEXITSTATUS(std::system((command + ply + "'").c_str())), kIo);  // the summary is lost
   EXPECT_THAT(text_of(ply), AllOf(StartsWith("ply\n"), Not(HasSubstr("level 0: "))));
   EXPECT_EQ(names(), (std::set<std::string>{"a.hier", "a.json", "a.ply", "x.ply"}));
 }

@@ -468,9 +468,9 @@ TEST_F(ServeTest, KilledInTheMiddleOfABuildItGoesOnWhenItIsStartedAgain) {
   EXPECT_EQ(process_->end(SIGINT), 0);
   EXPECT_FALSE(fs::exists(work));
 
-  const std::string build = std::string(MESHHIER_BINARY) +
-                            " build --set input=" + (inbox() / "new.ply").string() +
-                            " output=" + (folder_.path() / "direct.hier").string() + " >/dev/null";
+  const std::string build = "'" MESHHIER_BINARY "' build --set input='" +
+                            (inbox() / "new.ply").string() + "' output='" +
+                            (folder_.path() / "direct.hier").string() + "' >/dev/null";
   ASSERT_EQ(std::system(build.c_str()), 0);
   std::size_t files = 0;
   for (const auto& entry : fs::recursive_directory_iterator(folder_.path() / "direct.hier")) {

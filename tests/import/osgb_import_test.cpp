@@ -109,7 +109,7 @@ class Osgb : public testing::Test {
 
   /// Makes site/ of the sheet.
   void make(const std::string& options = "") const {
-    const std::string command = fmt::format("cd {} && {} sheet.obj -o site {} >log 2>&1",
+    const std::string command = fmt::format("cd '{}' && '{}' sheet.obj -o site {} >log 2>&1",
                                             folder_.string(), maker().string(), options);
     ASSERT_EQ(std::system(command.c_str()), 0) << bytes_of(folder_ / "log");
   }

@@ -12,6 +12,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace meshhier::partition {
 namespace {
@@ -28,7 +29,8 @@ class RenumberTest : public testing::Test {
  protected:
   void SetUp() override {
     const testing::TestInfo& info = *testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(testing::TempDir()) / (std::string("renumber_") + info.name());
+    path_ = std::filesystem::path(testing::TempDir()) /
+            (std::string("renumber_") + info.name() + std::to_string(::getpid()));
   }
 
   template <class Value, class Id = std::uint32_t>

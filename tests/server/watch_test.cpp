@@ -146,7 +146,7 @@ class WatchTest : public testing::Test {
     fs::permissions(program_, fs::perms::owner_all);
   }
   void run_before_the_build(const std::string& line) {
-    run_instead(line + "\nexec " MESHHIER_BINARY " \"$@\"\n");
+    run_instead(line + "\nexec '" MESHHIER_BINARY "' \"$@\"\n");
   }
   /// The manifest is the last file that is written.
   void run_before_the_end(const std::string& line) {

@@ -1,6 +1,8 @@
 // The test meshes are what their header says: other tests build on it.
 #include "tests/support/meshes.h"
 
+#include "tests/support/sample_hierarchy.h"
+
 #include <filesystem>
 #include <set>
 
@@ -102,14 +104,14 @@ TEST(TestMeshes, NoiseIsBoundedAndRepeatable) {
 }
 
 TEST(TestMeshes, WritesPlyOfTheExactSize) {
-  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / "test_mesh.ply";
+  const TemporaryDirectory directory;
+  const std::filesystem::path path = directory.path() / "test_mesh.ply";
   const TestMesh mesh = open_grid(3, 2);
   write_ply(mesh, path);
   const std::string header =
       "ply\nformat binary_little_endian 1.0\nelement vertex 12\nproperty float x\nproperty float "
       "y\nproperty float z\nelement face 12\nproperty list uchar int vertex_indices\nend_header\n";
   EXPECT_EQ(std::filesystem::file_size(path), header.size() + 12 * 12 + 12 * 13);
-  std::filesystem::remove(path);
   EXPECT_THROW(write_ply(mesh, path / "no" / "such"), std::runtime_error);
 }
 

@@ -20,6 +20,8 @@
 #include <set>
 #include <string>
 
+#include <unistd.h>
+
 namespace meshhier::tests {
 namespace {
 
@@ -471,7 +473,8 @@ namespace {
 fs::path memory_directory() {
   const fs::path memory = "/dev/shm";
   std::error_code ignored;
-  return fs::is_directory(memory, ignored) ? memory : fs::temp_directory_path();
+  const bool is_free = fs::is_directory(memory, ignored) && ::access(memory.c_str(), W_OK) == 0;
+  return is_free ? memory : fs::temp_directory_path();
 }
 
 }  // namespace
