@@ -31,6 +31,7 @@ SILENCE = 30.0  # seconds without a byte: then a try is over
 _MOST_REDIRECTS = 10
 _LEFT = "/%:=&~+!$,;'@()*[]"  # as it is in paths
 _TOO_LARGE = f"the host sends files whole, but no parts of them (HTTP ranges), and this one has more than {MOST_WHOLE} bytes"
+SENT_PACKED = "the host sends it packed (Content-Encoding), and then parts of it say nothing: switch that off for these files"
 _PASSING = {408, 425, 429}  # and all from 500 on but 501
 
 
@@ -156,7 +157,7 @@ class HttpClient:
             if response.status != 416 or answer.data:
                 _check_head(address, answer, response, at, is_known)
                 self._receive(address, response, answer, MOST_WHOLE if answer.is_whole else count)
-                _check_length(response, answer, first, count)
+                _check_length(address, response, answer, first, count)
             else:  # the file ends before
                 _note(address, answer, response, _length(response.headers.get("Content-Range", "").rpartition("/")[2]), is_known)
             is_kept = response.isclosed() and not response.will_close
@@ -322,10 +323,12 @@ def _note(address: Address, answer: Answer, response: http.client.HTTPResponse, 
     answer.encoding = response.headers.get("Content-Encoding", "").strip().lower().replace("identity", "")
 
 
-def _check_length(response: http.client.HTTPResponse, answer: Answer, first: int, count: int) -> None:
+def _check_length(address: Address, response: http.client.HTTPResponse, answer: Answer, first: int, count: int) -> None:
     """Raises _Passing if the answer has ended too early."""
     end = None if answer.total is None else answer.total if answer.is_whole else min(count, answer.total - first)
     if response.length or (end is not None and len(answer.data) < end):
+        if answer.encoding and not answer.is_whole and not response.length:
+            raise NetworkError(f"{address.shown}: {SENT_PACKED}")
         raise _Passing("the answer broke off")
 
 

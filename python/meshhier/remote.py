@@ -14,7 +14,7 @@ from typing import Any, Callable, Iterable, Iterator, Optional, Sequence, Union
 
 from .asked import is_web_address, whole
 from .errors import CorruptError, NetworkError, NotAHierarchyError, ReplacedError, UsageError
-from .http_client import Address, Answer, Headers, HttpClient, unpacked, without_secrets
+from .http_client import SENT_PACKED, Address, Answer, Headers, HttpClient, unpacked, without_secrets
 from .storage import Archive, Files, closed, open_files
 
 #: Small reads fetch whole blocks, so that many of them are few requests.
@@ -163,7 +163,7 @@ class RemoteFile:
             self.size = len(self._whole)
             return
         if start.encoding and not is_packed_itself:
-            raise NetworkError(f"{address.shown}: the host sends it packed (Content-Encoding), and then parts of it say nothing: switch that off for these files")
+            raise NetworkError(f"{address.shown}: {SENT_PACKED}")
         if start.total is None:
             raise NetworkError(f"{address.shown}: the host does not tell how long it is (Content-Range)")
         self.size = start.total

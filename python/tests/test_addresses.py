@@ -242,6 +242,9 @@ def test_what_the_host_packs_on_the_way_is_unpacked_or_told(host: Host, root: Pa
     host.reply = with_headers(Content_Encoding="gzip")
     with pytest.raises(meshhier.NetworkError, match="Content-Encoding"):
         meshhier.open(f"{host.address}/a.3tz")
+    host.reply = lambda handler: handler.send(206, b"few", Content_Range="bytes 0-65535/100000", Content_Encoding="gzip") or True
+    with pytest.raises(meshhier.NetworkError, match="parts of it say nothing"):
+        meshhier.open(f"{host.address}/a.3tz")
     host.has_ranges, host.reply = False, with_headers(Content_Encoding="br")
     with pytest.raises(meshhier.NetworkError, match="as br"):
         meshhier.open(f"{host.address}/a.hier")

@@ -290,8 +290,11 @@ class HttpClient::Connection {
                                 "and this one has more than {} bytes",
                                 kMostWhole));
     }
-    if (transfer.is_too_much)
-      fail(address, "the host sent more than the part that was asked for");
+    if (transfer.is_too_much) {
+      fail(address, transfer.head.encoding.empty()
+                        ? "the host sent more than the part that was asked for"
+                        : kSentPacked);
+    }
   }
 
   void note(const HttpAddress& address, const Transfer& transfer, long status) {
@@ -300,6 +303,7 @@ class HttpClient::Connection {
     if (transfer.before > 0 && answer.version != version)
       fail(address, "it has become another file on the host while it was read");
     answer.version = version;
+    answer.encoding = transfer.head.encoding;
     answer.total = status == kWhole ? transfer.head.length : transfer.head.total;
   }
 

@@ -20,6 +20,12 @@ struct HttpOptions {
   std::chrono::seconds silence{30};  ///< without a byte: then a try is over, answered or not
 };
 
+/// What a file is not read for that a host packs on its way.
+inline constexpr const char* kSentPacked =
+    "the host sends it packed (Content-Encoding), and then parts of it say nothing: switch that "
+    "off "
+    "for these files";
+
 /// The address of a file on the web.
 struct HttpAddress {
   std::string url;    ///< as it is asked for, perhaps with secrets
@@ -31,6 +37,7 @@ struct HttpAnswer {
   bool is_whole = false;                 ///< `bytes` are all of the file: the host knows no ranges
   std::optional<std::uint64_t> total{};  ///< bytes of the file
   std::string version;                   ///< the file's ETag or Last-Modified; empty: not known
+  std::string encoding{};                ///< its Content-Encoding; empty: none
 };
 
 /// Bytes and requests so far, of all threads, failed tries included.

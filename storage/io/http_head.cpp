@@ -26,6 +26,8 @@ void HttpHead::add(std::string_view line) {
     etag_ = value.starts_with("W/") ? value.substr(2) : value;
   else if (name == "last-modified")
     modified_ = value;
+  else if (name == "content-encoding")
+    encoding = value == "identity" ? "" : value;
   else if (name == "content-length")
     length = length_of(value);
   else if (name == "content-range")

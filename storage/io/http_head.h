@@ -15,6 +15,7 @@ struct HttpHead {
   std::optional<std::uint64_t> total;   ///< bytes of the file, likewise
   std::optional<std::uint64_t> length;  ///< bytes of the answer
   std::string impossible;               ///< a length that no file has
+  std::string encoding;                 ///< Content-Encoding; empty: none
   std::size_t bytes = 0;                ///< size of the header so far
   bool is_complete = false;             ///< all of it has come
 

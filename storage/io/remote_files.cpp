@@ -60,6 +60,11 @@ bool may_change(const fs::path& path) {
   return path.extension() == ".json";
 }
 
+/// Tiles may be stored as gzip: what a host calls their encoding is the file.
+bool is_packed_itself(const fs::path& path) {
+  return path.extension() == ".glb";
+}
+
 bool is_archive(const fs::path& path) {
   return lower_extension(path) == ".3tz";
 }
@@ -104,6 +109,8 @@ RemoteFiles::Content RemoteFiles::load(const fs::path& path) {
   const auto start = client_->find(address_of(path), 0, asked);
   if (!start)
     return nullptr;
+  if (!start->encoding.empty() && !is_packed_itself(path))
+    throw Error(ErrorCode::io, fmt::format("{}: {}", path.string(), kSentPacked));
   auto content =
       std::make_shared<RemoteContent>(*client_, address_of(path), *parts_, *start, asked);
   const std::lock_guard lock(mutex_);

@@ -18,6 +18,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace meshhier::storage {
 namespace {
@@ -56,7 +57,8 @@ class RemoteFilesTest : public testing::Test {
   }
   RemoteFiles& reopen(const std::string& address, HttpOptions options = {}) {
     options.first_wait = std::chrono::milliseconds(1);
-    const fs::path scratch = fs::path(testing::TempDir()) / "meshhier-remote-files-test";
+    const fs::path scratch =
+        fs::path(testing::TempDir()) / fmt::format("meshhier-remote-files-test-{}", getpid());
     remote_ = std::make_unique<RemoteFiles>(*local_, address, scratch, std::move(options),
                                             [this] { check_(); });
     EXPECT_FALSE(local_->exists(scratch));
@@ -337,10 +339,26 @@ TEST_F(RemoteFilesTest, LiesAreTold) {
     EXPECT_THAT(problem(open(with(reply + "Content-Range: bytes 0-99/100\r\n\r\n"))),
                 HasSubstr("header of the host's answer has more than 65536 bytes"));
   }
+  for (const std::size_t bytes : {30U, 70'000U}) {
+    EXPECT_THAT(
+        problem(open(with(part + "Content-Encoding: gzip\r\nContent-Range: bytes 0-99/100\r\n\r\n" +
+                          std::string(bytes, 'x')))),
+        HasSubstr("sends it packed (Content-Encoding)"));
+  }
   EXPECT_THAT(problem(open(with("HTTP/1.1 204 None\r\n\r\n"))), HasSubstr("answered 204"));
   EXPECT_THAT(problem(open(with("no http at all"))), HasSubstr("a.3tz: "));
   EXPECT_THAT(problem(open(with("HTTP/1.1 302 Found\r\nLocation: file:///etc/passwd\r\n\r\n"))),
               HasSubstr("a.3tz: "));
+}
+
+TEST_F(RemoteFilesTest, ATileThatIsStoredPackedComesAsItIs) {
+  RemoteFiles& remote = open(
+      [&](const HostRequest& request) {
+        return answer_with(request, content_, "ETag: \"1\"\r\nContent-Encoding: gzip\r\n");
+      },
+      "a.hier");
+  EXPECT_EQ(read(*remote.open(remote.root() / "tiles/00/000000.glb"), 0, 100),
+            content_.substr(0, 100));
 }
 
 TEST_F(RemoteFilesTest, RedirectsAreFollowed) {
