@@ -137,9 +137,10 @@ void add_service_options(CLI::App& command, ServeArguments& arguments) {
       command,
       {"--log", "How the lines of the log are written [text]", "json|text", "json or text"},
       taker(server::kLogFormats, arguments.log_format));
-  add_size_option(command, "--disk-floor",
-                  "With --watch or --inbox: with less disk left it is not ready",
-                  arguments.disk_floor);
+  add_size_option(
+      command, "--disk-floor",
+      "With --watch or --inbox: with less disk left it is not ready and takes no meshes",
+      arguments.disk_floor);
   command
       .add_option("--metrics-token-file", arguments.metrics_token_file,
                   "Who reads /metrics must know the word in this file; else only this machine may")

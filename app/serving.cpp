@@ -15,6 +15,7 @@
 #include "server/vitals.h"
 #include "server/watch.h"
 #include "storage/io/child_process.h"
+#include "storage/io/file_rights.h"
 #include "storage/io/output_file.h"
 #include "storage/io/own_program.h"
 
@@ -103,6 +104,8 @@ server::UploadOptions upload_options(const ServeArguments& arguments, Environmen
   server::UploadOptions options;
   options.inbox = environment.files.canonical(arguments.inbox);
   options.limit_bytes = arguments.upload_limit;
+  options.folder = environment.files.canonical(arguments.folder);
+  options.disk_floor = arguments.disk_floor;
   options.suffix = suffix_of(arguments.config, environment);
   options.is_loopback = server::is_loopback_host(arguments.server.host);
   if (!arguments.token_file.empty())
@@ -208,6 +211,8 @@ class Service {
     ViewerPlace viewer = find_viewer(environment.files, arguments.viewer);
     if (!viewer.folder)
       console_.print(server::LogLevel::warning, viewer.missing + ' ' + kServedWithoutPage);
+    tell_if_open("--upload-token-file", arguments.token_file);
+    tell_if_open("--metrics-token-file", arguments.metrics_token_file);
     if (!arguments.inbox.empty()) {
       server::WatchOptions options = watch_options(arguments, environment);
       options.on_new = [this] { site_->refresh(); };
@@ -258,6 +263,14 @@ class Service {
   }
 
  private:
+  /// Tells if a secret is none for other users.
+  void tell_if_open(const char* option, const std::string& file) const {
+    if (!file.empty() && storage::is_open_to_others(file)) {
+      warn_(fmt::format("{} {}: other users may read or change it: chmod 600", option,
+                        plain_text(file, kLongestFolderName)));
+    }
+  }
+
   /// Tells if there are no hierarchies. A folder that cannot be listed now may be listed later.
   void tell_if_empty(const ServeArguments& arguments) {
     try {

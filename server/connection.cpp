@@ -143,7 +143,7 @@ bool Connection::invite_body() {
 Connection::BodyPiece Connection::receive_body(std::span<std::byte> bytes) {
   if (!invite_body())
     return {0, Body::End::lost};
-  for (;;) {
+  while (!is_stopping_()) {
     if (is_too_slow() || !wait(POLLIN, Clock::now() + limits_.stall, is_stopping_))
       return {0, is_stopping_() ? Body::End::stopping : Body::End::slow};
     const ssize_t count = ::recv(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT);
@@ -152,6 +152,7 @@ Connection::BodyPiece Connection::receive_body(std::span<std::byte> bytes) {
     if (count == 0 || (errno != EAGAIN && errno != EINTR))
       return {0, Body::End::lost};
   }
+  return {0, Body::End::stopping};
 }
 
 Connection::BodyPiece Connection::take_body(std::span<std::byte> bytes) {

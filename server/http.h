@@ -42,7 +42,7 @@ class Body {
 /// A request as a client sent it; nobody vouches for any of it.
 struct Request {
   std::string method = "GET";
-  std::string target{};  ///< as it was sent: "/models.json?x", not decoded
+  std::string target{};  ///< as it was sent: "/models.json?x", not decoded; of an address its path
   std::optional<std::string> host{};
   std::optional<std::string> accept_encoding{};
   std::optional<std::string> if_none_match{};

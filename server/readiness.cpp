@@ -3,8 +3,6 @@
 #include "base/error.h"
 #include "execution/size_text.h"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 namespace meshhier::server {
@@ -43,21 +41,27 @@ std::string first_of(std::string reason, const std::string& next) {
 }
 
 Check check_disk(const ReadinessOptions& options, storage::FileSystem& files) {
+  const auto why_low = [&](const fs::path& folder) {
+    return why_below_floor(folder, options.disk_floor, 0, files);
+  };
   try {
-    std::uint64_t free = files.free_bytes(options.folder->path());
-    if (options.takes_uploads)
-      free = std::min(free, files.free_bytes(options.inbox));
-    if (free >= options.disk_floor)
-      return {"disk"};
-    return {"disk", fmt::format("{} are free, and {} must be (--disk-floor)",
-                                execution::rounded_size_text(free),
-                                execution::exact_size_text(options.disk_floor))};
+    const std::string reason = why_low(options.folder->path());
+    return {"disk", options.takes_uploads ? first_of(reason, why_low(options.inbox)) : reason};
   } catch (const Error&) {
     return {"disk", "it does not tell what is free"};
   }
 }
 
 }  // namespace
+
+std::string why_below_floor(const fs::path& folder, std::uint64_t floor, std::uint64_t more,
+                            storage::FileSystem& files) {
+  const std::uint64_t free = files.free_bytes(folder);
+  if (free >= floor && free - floor >= more)
+    return "";
+  return fmt::format("{} are free, and {} must stay free (--disk-floor)",
+                     execution::rounded_size_text(free), execution::exact_size_text(floor));
+}
 
 std::vector<Check> check_readiness(const ReadinessOptions& options, storage::FileSystem& files) {
   Check folder{"folder", why_not_shown(*options.folder)};

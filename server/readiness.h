@@ -16,8 +16,13 @@ struct ReadinessOptions {
   std::shared_ptr<const storage::Folder> folder{};  ///< the hierarchies', as they are shown
   std::filesystem::path inbox{};  ///< watched; empty: none is, and nothing is written
   bool takes_uploads = false;     ///< into the inbox
-  std::uint64_t disk_floor = std::uint64_t{1} << 30;  ///< bytes that must be free to write
+  std::uint64_t disk_floor = std::uint64_t{1} << 30;  ///< bytes that stay free where it is written
 };
+
+/// Returns why less than `floor` bytes would be free in `folder` when `more` are written there, in
+/// words for clients; empty if that is not so. Throws Error(io).
+std::string why_below_floor(const std::filesystem::path& folder, std::uint64_t floor,
+                            std::uint64_t more, storage::FileSystem& files);
 
 /// One thing that must be so.
 struct Check {

@@ -3,10 +3,14 @@
 #include "base/small_letters.h"
 #include "base/trimmed.h"
 #include "server/line_ends.h"
+#include "storage/io/http_client.h"
 #include "storage/io/http_token.h"
 
 #include <algorithm>
 #include <string>
+#include <utility>
+
+#include <fmt/format.h>
 
 namespace meshhier::server {
 namespace {
@@ -17,15 +21,41 @@ bool has_controls(std::string_view text) {
   });
 }
 
-/// Whether it is method, target and version, with one blank between them and none elsewhere.
-bool is_request_line(std::string_view line) {
+struct Target {
+  std::string path;                 ///< with its query
+  std::optional<std::string> host;  ///< of a whole address: it counts instead of the header's
+};
+/// Parses a target, which may be a whole address (RFC 9112, section 3.2.2); returns nothing for an
+/// address without a host, or with somebody's name before it.
+std::optional<Target> parse_target(std::string_view target) {
+  if (!storage::is_web_address(target))
+    return Target{std::string(target), std::nullopt};
+  const std::string_view address = target.substr(target.find("//") + 2);
+  const std::size_t end = std::min(address.find_first_of("/?#"), address.size());
+  const std::string_view host = address.substr(0, end), path = address.substr(end);
+  if (host.empty() || host.find('@') != std::string_view::npos)
+    return std::nullopt;
+  return Target{(path.starts_with('/') ? "" : "/") + std::string(path), std::string(host)};
+}
+
+struct RequestLine {
+  std::string_view method, version;
+  Target target;
+};
+/// Parses method, target and version, with one blank between them and none elsewhere.
+std::optional<RequestLine> parse_request_line(std::string_view line) {
   const std::size_t first = line.find(' ');
   const std::size_t last = line.rfind(' ');
   if (first == last || !storage::is_http_token(line.substr(0, first)) || has_controls(line) ||
       line.find('\t') != std::string_view::npos)
-    return false;
-  const std::string_view target = line.substr(first + 1, last - first - 1);
-  return !target.empty() && target.find(' ') == std::string_view::npos && last + 1 < line.size();
+    return std::nullopt;
+  const std::string_view word = line.substr(first + 1, last - first - 1);
+  if (word.empty() || word.find(' ') != std::string_view::npos || last + 1 == line.size())
+    return std::nullopt;
+  auto target = parse_target(word);
+  if (!target)
+    return std::nullopt;
+  return RequestLine{line.substr(0, first), line.substr(last + 1), std::move(*target)};
 }
 
 /// Whether it is a length of at most 19 digits, so that it fits 64 bits.
@@ -103,10 +133,14 @@ std::string_view take_line(std::string_view& rest) {
 std::optional<RequestHead> parse_head(std::string_view raw) {
   if (!has_only_whole_lines(raw))
     return std::nullopt;
-  const std::string_view request_line = take_line(raw);
-  if (!is_request_line(request_line))
+  const auto first = parse_request_line(take_line(raw));
+  if (!first)
     return std::nullopt;
-  RequestHead head{.text = std::string(request_line).append(kLineEnd)};
+  const auto& [path, host] = first->target;
+  RequestHead head{.text =
+                       fmt::format("{} {} {}{}", first->method, path, first->version, kLineEnd)};
+  if (host)
+    head.text += fmt::format("Host: {}{}", *host, kLineEnd);
   std::size_t ranges = 0;
   Framing framing;
   while (raw != kLineEnd) {
@@ -119,7 +153,7 @@ std::optional<RequestHead> parse_head(std::string_view raw) {
       ++ranges;
     } else if (header->name == "expect" && small_letters(header->value) == "100-continue") {
       head.expects_continue = true;
-    } else {
+    } else if (!(host && header->name == "host")) {
       head.text.append(line).append(kLineEnd);
     }
   }

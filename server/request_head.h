@@ -15,7 +15,8 @@ inline constexpr std::size_t kMostHeadBytes = 16 * 1024;
 struct RequestHead {
   /// The head for the library, without the header Range: it would match its value against a regular
   /// expression, recursing with each byte (2.2 MB of stack for 8 KB), and hold several ranges for
-  /// as many copies of the file.
+  /// as many copies of the file. A target that is a whole address is its path here, and its host
+  /// is in the header Host.
   std::string text;
   std::optional<std::string> range{};  ///< the value, if there is one such header and no more
   bool has_body = false;               ///< more than 0 bytes are announced
@@ -30,8 +31,9 @@ struct RequestHead {
 /// Parses a head. `raw`: up to and with the empty line. Returns nothing if two readers could see
 /// two things in it (RFC 9112, sections 3, 5 and 6): a line that ends otherwise than with CR LF or
 /// goes on in the next one, a first line that is not three words with one blank between them, a
-/// character of control, a name that is none or is followed by a blank, more than one Host, or a
-/// body whose length is said twice or in no number.
+/// character of control, a target that is an address of no host or of a user, a name that is none
+/// or is followed by a blank, more than one Host, or a body whose length is said twice or in no
+/// number.
 std::optional<RequestHead> parse_head(std::string_view raw);
 
 }  // namespace meshhier::server

@@ -9,6 +9,7 @@
 #include "server/build_target.h"
 #include "server/folder_scan.h"
 #include "server/multipart.h"
+#include "server/readiness.h"
 #include "server/secret.h"
 #include "server/staged_upload.h"
 #include "server/url_path.h"
@@ -29,10 +30,19 @@ constexpr std::size_t kStoreBytes = 256 * 1024;
 /// After so many bytes the disk is asked to begin, so that the sync at the end has little left to
 /// do.
 constexpr std::uint64_t kSyncEvery = 64 * 1024 * 1024;
+/// After so many bytes it is asked what is free.
+constexpr std::uint64_t kLookEvery = 1024 * 1024;
 /// A photo scan has some hundred pictures.
 constexpr std::size_t kMostFiles = 4096;
 
 using Source = std::function<std::size_t(std::span<std::byte>)>;
+/// Throws if the disk is too full to go on.
+using Look = std::function<void()>;
+
+/// A server that ends sends no bodies any more.
+Reply ending() {
+  return {.status = 503};
+}
 
 /// Returns a refusal if the body has ended too early; nothing if all has come.
 std::optional<Reply> refuse_end(const Body& body) {
@@ -44,17 +54,19 @@ std::optional<Reply> refuse_end(const Body& body) {
     case Body::End::slow:
       return text_reply(408, "The upload was too slow.");
     case Body::End::stopping:
-      return text_reply(503, "The server ends.");
+      return ending();
   }
   return std::nullopt;
 }
 
-/// Writes all that comes, and forces it to the disk. Throws Error(io), and Error(interrupted) if
-/// the server ends.
-void store(storage::File& file, const Body& body, const Source& source) {
+/// Writes all that comes, and forces it to the disk. Throws Error(io), Error(interrupted) if the
+/// server ends, and what `look` throws.
+void store(storage::File& file, const Body& body, const Source& source, const Look& look) {
   std::vector<std::byte> buffer(kStoreBytes);
   std::uint64_t written = 0, unsynced = 0;
   while (const std::size_t count = source(buffer)) {
+    if (written / kLookEvery != (written + count) / kLookEvery)
+      look();
     file.write_at(written, std::span(buffer).first(count));
     written += count;
     unsynced += count;
@@ -87,11 +99,12 @@ class FolderFiles {
  public:
   /// `name`: the folder's to be; `suffix`: the hierarchies'.
   FolderFiles(storage::FileSystem& files, std::filesystem::path folder, std::string name,
-              std::string suffix)
+              std::string suffix, Look look)
       : files_(files),
         folder_(std::move(folder)),
         name_(std::move(name)),
-        suffix_(std::move(suffix)) {
+        suffix_(std::move(suffix)),
+        look_(std::move(look)) {
     files_.make_directories(folder_);
   }
 
@@ -102,7 +115,9 @@ class FolderFiles {
       if (auto refused = refuse_name(form.name()))
         return refused;
       const auto file = files_.create(folder_ / form.name());
-      store(*file, body, [&](std::span<std::byte> bytes) { return form.read(bytes); });
+      look_();
+      store(
+          *file, body, [&](std::span<std::byte> bytes) { return form.read(bytes); }, look_);
       if (auto refused = refuse_end(body))
         return refused;
     }
@@ -137,6 +152,7 @@ class FolderFiles {
   storage::FileSystem& files_;
   std::filesystem::path folder_;
   std::string name_, suffix_;
+  Look look_;
   std::set<std::string> names_;  ///< in small letters: some disks make no difference
   std::size_t meshes_ = 0;
   std::size_t rasters_ = 0;  ///< files that may be one, or pictures of a mesh
@@ -208,9 +224,18 @@ std::optional<Reply> Uploads::refuse_size(const Request& request) const {
     return text_reply(413, fmt::format("It is larger than {}, the limit (--upload-limit).",
                                        execution::exact_size_text(options_.limit_bytes)));
   }
-  if (request.body->bytes() > files_.free_bytes(options_.inbox))
-    return text_reply(507, "The disk of the inbox has no room for it.");
+  require_room(request.body->bytes());
   return std::nullopt;
+}
+
+/// Throws Error(budget) if the inbox's disk has no room for so many bytes more, or that of the
+/// hierarchies for none.
+void Uploads::require_room(std::uint64_t more) const {
+  std::string why = why_below_floor(options_.inbox, options_.disk_floor, more, files_);
+  if (why.empty() && !options_.folder.empty())
+    why = why_below_floor(options_.folder, options_.disk_floor, 0, files_);
+  if (!why.empty())
+    throw Error(ErrorCode::budget, fmt::format("The disk has no room for it: {}.", why));
 }
 
 std::optional<Reply> Uploads::refuse_name(const std::string& name) const {
@@ -245,7 +270,9 @@ Reply Uploads::reply_to(const Request& request, std::string_view place) {
     throw;
   } catch (const Error& error) {
     if (error.code() == ErrorCode::interrupted)
-      return text_reply(503, "The server ends.");
+      return ending();
+    if (error.code() == ErrorCode::budget)
+      return text_reply(507, error.what());
     tell_(fmt::format("{}: {}", *name, error.what()));
     return text_reply(507, "It could not be stored; the server's terminal says why.");
   }
@@ -280,8 +307,9 @@ Reply Uploads::take_whole(const Request& request, const std::string& name) {
 
 Reply Uploads::take_file(Body& body, const std::string& name) {
   StagedUpload staged(files_, options_.inbox);
-  store(*files_.create(staged.path()), body,
-        [&](std::span<std::byte> bytes) { return body.read(bytes); });
+  store(
+      *files_.create(staged.path()), body,
+      [&](std::span<std::byte> bytes) { return body.read(bytes); }, [this] { require_room(0); });
   if (auto refused = refuse_end(body))
     return std::move(*refused);
   if (is_archive_name(name) && is_hierarchy(files_.open(staged.path())))
@@ -292,7 +320,7 @@ Reply Uploads::take_file(Body& body, const std::string& name) {
 Reply Uploads::take_folder(Body& body, const std::string& boundary, const std::string& name) {
   StagedUpload staged(files_, options_.inbox);
   MultipartReader form(body, boundary);
-  FolderFiles files(files_, staged.path(), name, options_.suffix);
+  FolderFiles files(files_, staged.path(), name, options_.suffix, [this] { require_room(0); });
   if (auto refused = files.take(body, form))
     return std::move(*refused);
   return publish(staged, name);

@@ -25,8 +25,10 @@ namespace meshhier::server {
 struct UploadOptions {
   std::filesystem::path inbox;                          ///< absolute
   std::uint64_t limit_bytes = std::uint64_t{20} << 30;  ///< a request has at most
-  std::string suffix = ".hier";                         ///< the hierarchies' that are made
-  std::string token{};      ///< who sends must know it; empty: there is none
+  std::filesystem::path folder{};  ///< the hierarchies'; empty: its disk does not count
+  std::uint64_t disk_floor = 0;    ///< bytes that stay free on both disks
+  std::string suffix = ".hier";    ///< the hierarchies' that are made
+  std::string token{};             ///< who sends must know it; empty: there is none
   bool is_loopback = true;  ///< only this machine reaches the server; else nobody sends without a
                             ///< token
   std::size_t most_at_once = 8;  ///< each holds a thread
@@ -64,6 +66,7 @@ class Uploads {
 
   Reply reply_to(const Request& request, std::string_view place);
   std::optional<Reply> refuse_size(const Request& request) const;
+  void require_room(std::uint64_t more) const;
   std::optional<Reply> refuse_name(const std::string& name) const;
   Reply take_whole(const Request& request, const std::string& name);
   Reply take_file(Body& body, const std::string& name);

@@ -423,6 +423,40 @@ TEST_F(ServeTest, FromElsewhereATokenIsNeeded) {
   EXPECT_EQ(list()["upload"]["token"], true);
 }
 
+TEST_F(ServeTest, ASecretThatOthersMayReadIsToldAtTheStart) {
+  fs::create_directories(inbox());
+  const auto told = [&](fs::perms mode, const std::string& format) {
+    const fs::path token = folder_.path() / "my token";
+    tests::write_text(token, "0123456789abcdef\n");
+    fs::permissions(token, mode);
+    serve({"--inbox", inbox().string(), "--upload-token-file", token.string(),
+           "--metrics-token-file", token.string(), "--log", format})
+        .port();
+    EXPECT_EQ(process_->end(SIGTERM), 0);
+    return process_->messages();
+  };
+  using fs::perms;
+  const perms own = perms::owner_read | perms::owner_write;
+  EXPECT_THAT(told(own, "text"), Not(HasSubstr("chmod")));
+  EXPECT_THAT(told(perms::owner_read, "text"), Not(HasSubstr("chmod")));
+  for (const perms others : {perms::group_read, perms::others_read, perms::group_write}) {
+    const std::string messages = told(own | others, "text");
+    for (const char* option : {"--upload-token-file", "--metrics-token-file"})
+      EXPECT_THAT(messages, HasSubstr(fmt::format("Z warning {} ", option)));
+    EXPECT_THAT(messages, HasSubstr("chmod 600"));
+  }
+  std::istringstream lines(told(own | perms::others_all, "json"));
+  std::size_t warnings = 0;
+  for (std::string line; std::getline(lines, line);) {
+    const json object = json::parse(line);
+    const bool is_warning =
+        object["message"].get<std::string>().find("chmod 600") != std::string::npos;
+    EXPECT_TRUE(!is_warning || object["level"] == "warning");
+    warnings += is_warning ? 1 : 0;
+  }
+  EXPECT_EQ(warnings, 2U);
+}
+
 TEST_F(ServeTest, OnAllAddressesItSaysHowOthersComeToIt) {
   const std::uint16_t port = serve({"--host", "0.0.0.0"}).port();
   process_->end(SIGTERM);

@@ -309,6 +309,7 @@ std::string check_system(const Source& source, const Include& include) {
       {"storage/io/code_memory.cpp", {"sys/mman.h", "unistd.h"}},
       {"storage/io/confinement.cpp", {"sys/prctl.h", "sys/resource.h", "sys/time.h", "unistd.h"}},
       {"storage/io/descriptor.h", {"unistd.h"}},
+      {"storage/io/file_rights.cpp", {"sys/stat.h", "unistd.h"}},
       {"storage/io/folder.cpp", {"dirent.h", "fcntl.h", "sys/stat.h"}},
       {"storage/io/link_free_paths.cpp", {"dirent.h", "fcntl.h", "sys/stat.h"}},
       {"storage/io/neighbours.cpp", {"fcntl.h", "sys/file.h", "sys/stat.h"}},

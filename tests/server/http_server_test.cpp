@@ -185,7 +185,7 @@ TEST_F(HttpServerTest, NoRequestHidesInAnother) {
        {"Transfer-Encoding : chunked", "Transfer-Encoding:\r\n chunked", "X: a\r\n\tb",
         "Content-Length: 5\r\nContent-Length: 5", "Content-Length: 5\r\nTransfer-Encoding: chunked",
         "Content-Length: 5, 5", "Content-Length: -1", "Transfer-Encoding: gzip, chunked",
-        "Host: localhost", ": nameless", "A B: c", "nothing"}) {
+        "Host: localhost", "Host: evil.example", ": nameless", "A B: c", "nothing"}) {
     RawClient client(port());
     client.send("GET /models.json HTTP/1.1\r\nHost: localhost\r\n" + std::string(lines) +
                 "\r\n\r\n" + hidden);
@@ -200,6 +200,39 @@ TEST_F(HttpServerTest, HostsOfOthersAreRefused) {
     RawClient client(port());
     client.send("GET /models.json HTTP/1.1\r\n" + std::string(lines) + "\r\n");
     EXPECT_EQ(client.receive().status, 421) << lines;
+  }
+}
+
+TEST_F(HttpServerTest, AWholeAddressIsAskedAsItsPathUnderItsOwnHost) {
+  start();
+  const auto status_of = [&](const std::string& target, const std::string& rest) {
+    RawClient client(port());
+    client.send("GET " + target + " HTTP/1." + rest + "\r\n\r\n");
+    return client.receive().status;
+  };
+  for (const char* host : {"localhost", "LOCALHOST:1", "127.0.0.1:8080", "[::1]"}) {
+    const std::string address = "http://" + std::string(host);
+    EXPECT_EQ(status_of(address + "/models.json?count=1", "1\r\nHost: evil.example"), 200) << host;
+    EXPECT_EQ(status_of(address + "/models.json", "0"), 200) << host;
+    EXPECT_EQ(status_of(address + "/none", "1\r\nHost: localhost"), 404) << host;
+  }
+  for (const char* host : {"evil.example", "localhost.evil.example", "127.0.0.1.evil", "a:80"}) {
+    const std::string address = "http://" + std::string(host) + "/models.json";
+    EXPECT_EQ(status_of(address, "1\r\nHost: localhost"), 421) << host;
+    EXPECT_EQ(status_of(address, "0"), 421) << host << ": health checks name none";
+  }
+  EXPECT_EQ(status_of("http://localhost@evil.example/models.json", "1\r\nHost: localhost"), 400);
+  EXPECT_EQ(status_of("ftp://localhost/models.json", "1\r\nHost: localhost"), 404);
+}
+
+TEST_F(HttpServerTest, TwoHostsAreRefusedWhateverTheVersion) {
+  start();
+  for (const char* version : {"0", "1"}) {
+    RawClient client(port());
+    client.send("GET /models.json HTTP/1." + std::string(version) +
+                "\r\nHost: localhost\r\nHost: evil.example\r\n\r\n");
+    EXPECT_EQ(client.receive().status, 400) << version;
+    EXPECT_TRUE(client.is_closed()) << version;
   }
 }
 

@@ -110,6 +110,18 @@ TEST_F(HttpUploadTest, ABodyMayComeInPieces) {
   }
 }
 
+TEST_F(HttpUploadTest, BelowTheFloorNobodyIsToldToGoOn) {
+  upload_.disk_floor = UINT64_MAX / 2;
+  start();
+  RawClient client(port());
+  client.send(head("a.ply", 3, "Expect: 100-continue\r\n"));
+  const RawReply reply = client.receive();
+  EXPECT_EQ(reply.status, 507);
+  EXPECT_THAT(reply.body, testing::HasSubstr("--disk-floor"));
+  EXPECT_TRUE(client.is_closed());
+  EXPECT_TRUE(entries().empty());
+}
+
 TEST_F(HttpUploadTest, WhatStandsBehindTheBodyIsNoPartOfIt) {
   start();
   RawClient client(port());
@@ -340,6 +352,26 @@ TEST_F(HttpUploadTest, AFullDiskIsTold) {
   RawClient client(port());
   client.send(head("a.ply", 200'000) + std::string(200'000, 'x'));
   EXPECT_EQ(client.receive().status, 507);
+  EXPECT_THAT(entries(), IsEmpty());
+}
+
+TEST_F(HttpUploadTest, StoppingWaitsForNoSenderThatNeverPauses) {
+  start();
+  std::atomic<bool> is_over = false;
+  std::thread sender([&] {
+    const RawClient client(port());
+    client.send(head("a.ply", std::size_t{1} << 30));
+    while (!is_over) {  // a minute
+      client.send(std::string(100'000, 'x'));
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  });
+  wait_for_part(1'000'000);
+  const auto begin = std::chrono::steady_clock::now();
+  server_->stop();
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+  is_over = true;
+  sender.join();
   EXPECT_THAT(entries(), IsEmpty());
 }
 

@@ -95,6 +95,23 @@ TEST(RequestHeadTest, HeadersThatCanBeReadInTwoWaysAreRefused) {
     EXPECT_EQ(parse_head(line + "\r\n"), std::nullopt) << line;
 }
 
+TEST(RequestHeadTest, OfAWholeAddressTheHostCountsAndNotTheHeaders) {
+  const auto text_of = [](const std::string& target, const std::string& version = "HTTP/1.1") {
+    const auto head =
+        parse_head("GET " + target + " " + version + "\r\nHost: other\r\nX: y\r\n\r\n");
+    return head ? head->text : "";
+  };
+  EXPECT_EQ(text_of("http://a:80/b?c=http://d/"),
+            "GET /b?c=http://d/ HTTP/1.1\r\nHost: a:80\r\nX: y\r\n\r\n");
+  EXPECT_EQ(text_of("HTTPS://[::1]", "HTTP/1.0"), "GET / HTTP/1.0\r\nHost: [::1]\r\nX: y\r\n\r\n");
+  EXPECT_EQ(text_of("http://a?b"), "GET /?b HTTP/1.1\r\nHost: a\r\nX: y\r\n\r\n");
+  EXPECT_EQ(text_of("/http://a/"), "GET /http://a/ HTTP/1.1\r\nHost: other\r\nX: y\r\n\r\n");
+  for (const char* target :
+       {"http://", "http:///b", "http://?b", "http://me@a/", "http://me:word@a/b"})
+    EXPECT_EQ(text_of(target), "") << target;
+  EXPECT_FALSE(parse_head("GET http://a/ HTTP/1.1\r\nHost: a\r\nHost: a\r\n\r\n"));
+}
+
 TEST(RequestHeadTest, LettersOfOtherScriptsMayBeInValues) {
   EXPECT_TRUE(parse_head("GET / HTTP/1.1\r\nX:\t\xc3\xa4 \r\n\r\n"));
 }

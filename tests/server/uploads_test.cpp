@@ -247,6 +247,50 @@ TEST_F(UploadsTest, AFullDiskIsTold) {
   EXPECT_THAT(told_[0], HasSubstr("no space left"));
 }
 
+constexpr std::uint64_t kMiB = 1024 * 1024;
+
+TEST_F(UploadsTest, WhatWouldGoBelowTheFloorIsRefusedUnread) {
+  options_.disk_floor = 10 * kMiB;
+  files_.limit_room(12 * kMiB);
+  TextBody body(std::string(2 * kMiB + 1, 'x'), {.on_read = [] { FAIL() << "it is read"; }});
+  const Reply reply = put("a.ply", body);
+  EXPECT_EQ(reply.status, 507);
+  EXPECT_EQ(reply.text,
+            "The disk has no room for it: 12.0 MiB are free, and 10MiB must stay free "
+            "(--disk-floor).\n");
+  EXPECT_EQ(put("a.ply", std::string(kMiB, 'x')).status, 201);
+  options_.disk_floor = 0;
+  EXPECT_THAT(told_, IsEmpty()) << "the disk has not failed";
+}
+
+TEST_F(UploadsTest, WhatFallsBelowTheFloorMeanwhileEnds) {
+  options_.disk_floor = 10 * kMiB;
+  const auto shrink = [&] { files_.limit_room(9 * kMiB); };
+  const auto status_of = [&](const auto& send, const std::string& text) {
+    files_.limit_room(100 * kMiB);
+    std::size_t reads = 0;
+    TextBody body(text, {.most_at_once = 10'000, .on_read = [&] {
+                           if (++reads == 10)
+                             shrink();
+                         }});
+    const Reply reply = send(body);
+    EXPECT_THAT(reply.text, HasSubstr("--disk-floor"));
+    EXPECT_LT(reads, 200U) << "it is read to its end";
+    expect_nothing_left("what had come");
+    return reply.status;
+  };
+  EXPECT_EQ(
+      status_of([&](TextBody& body) { return put("a.ply", body); }, std::string(3 * kMiB, 'x')),
+      507);
+  EXPECT_EQ(status_of([&](TextBody& body) { return post("house", body); },
+                      form_text({{"a.obj", std::string(3 * kMiB, 'x')}})),
+            507);
+  tests::FormFiles many;
+  for (int i = 0; i < 300; ++i)
+    many.emplace_back(std::to_string(i) + ".png", std::string(5000, 'x'));
+  EXPECT_EQ(status_of([&](TextBody& body) { return post("house", body); }, form_text(many)), 507);
+}
+
 TEST_F(UploadsTest, AnyCallMayFail) {
   uploads();
   bool has_failed = true;
