@@ -14,6 +14,8 @@
 #include <map>
 #include <optional>
 #include <ostream>
+#include <ranges>
+#include <set>
 #include <string>
 
 #include <fmt/format.h>
@@ -30,15 +32,15 @@ using Json = nlohmann::ordered_json;
 struct DiskShare {
   fs::path folder;  ///< one of those that are there
   std::uint64_t free_bytes = 0;
-  std::uint64_t more_bytes = 0;          ///< when all is built, than now
-  std::vector<std::uint64_t> at_work{};  ///< of each build, as long as it is at work, besides
+  std::uint64_t more_bytes = 0;  ///< when all is built, than now
+  /// Of each build, as long as it is at work, besides; the largest first.
+  std::multiset<std::uint64_t, std::greater<>> at_work{};
 
   /// The most that is needed at any moment, by so many builds at once.
-  std::uint64_t room_bytes(std::size_t jobs) {
-    std::ranges::sort(at_work, std::greater());
+  std::uint64_t room_bytes(std::size_t jobs) const {
     std::uint64_t bytes = more_bytes;
-    for (std::size_t i = 0; i < std::min(jobs, at_work.size()); ++i)
-      bytes += at_work[i];
+    for (const std::uint64_t one : at_work | std::views::take(jobs))
+      bytes += one;
     return bytes;
   }
 };
@@ -76,16 +78,18 @@ class BatchPlan {
   }
 
   /// Returns whether each disk holds all that will be put there.
-  bool has_room() {
-    return std::ranges::all_of(disks_, [this](auto& named) {
+  bool has_room() const {
+    return std::ranges::all_of(disks_, [this](const auto& named) {
       return named.second.room_bytes(arguments_.jobs) <= named.second.free_bytes;
     });
   }
 
-  std::string text(const std::vector<BatchItem>& items) {
-    std::string text =
-        summary_text(items, [this](const BatchItem& item) { return details_[item.name()]; });
-    for (auto& [root, disk] : disks_) {
+  std::string text(const std::vector<BatchItem>& items) const {
+    std::string text = summary_text(items, [this](const BatchItem& item) {
+      const auto found = details_.find(item.name());
+      return found == details_.end() ? "" : found->second;
+    });
+    for (const auto& [root, disk] : disks_) {
       const std::uint64_t room = disk.room_bytes(arguments_.jobs);
       text += fmt::format(
           "disk        {} more when all is built, {} at once on the way, {} free "
@@ -100,9 +104,9 @@ class BatchPlan {
     return text;
   }
 
-  Json json() {
+  Json json() const {
     Json disks = Json::array();
-    for (auto& [root, disk] : disks_) {
+    for (const auto& [root, disk] : disks_) {
       disks.push_back({{"folder", disk.folder.string()},
                        {"free_bytes", disk.free_bytes},
                        {"predicted_more_bytes", disk.more_bytes},
@@ -131,7 +135,7 @@ class BatchPlan {
     if (disk.folder.empty())
       disk = {.folder = estimate.disk, .free_bytes = estimate.free_bytes};
     disk.more_bytes += more;
-    disk.at_work.push_back(without(without(need.room_bytes, more), estimate.left_bytes));
+    disk.at_work.insert(without(without(need.room_bytes, more), estimate.left_bytes));
     wall_seconds_ += estimate.time.wall_seconds;
     details_[item.name()] =
         fmt::format(", about {}, in {}", execution::rounded_size_text(need.output_bytes),

@@ -48,11 +48,16 @@ struct FreeDisk {
     return free_bytes + left_bytes >= bytes && free_bytes + left_bytes - bytes >= claimed_bytes;
   }
   std::string text() const {
-    const std::string free =
+    std::string text =
         fmt::format("{} has {} free", directory.string(), execution::rounded_size_text(free_bytes));
-    return claimed_bytes == 0 ? free
-                              : fmt::format("{}, of which other builds at work there will take {}",
-                                            free, execution::rounded_size_text(claimed_bytes));
+    if (claimed_bytes == 0)
+      return text;
+    const std::string claimed = execution::rounded_size_text(claimed_bytes);
+    return text + (claimed_bytes < free_bytes
+                       ? ", of which other builds at work there will take " + claimed
+                       : fmt::format(", and other builds at work there will take {}: nothing of "
+                                     "it is left for this one",
+                                     claimed));
   }
 };
 
@@ -175,11 +180,13 @@ JobSize job_size(const config::Config& config, const mesh_io::MeshDescription& m
 void check_import_disk(std::uint64_t bytes, const std::filesystem::path& output,
                        storage::FileSystem& files) {
   const FreeDisk disk = find_free_disk(output, files);
-  if (!disk.has(bytes)) {
-    throw Error(ErrorCode::budget,
-                fmt::format("{}; to import the input takes up to about {} of temporary files",
-                            disk.text(), execution::rounded_size_text(bytes)));
-  }
+  if (disk.has(bytes))
+    return;
+  const std::string need =
+      bytes == 0 ? ""
+                 : fmt::format("; to import the input takes up to about {} of temporary files",
+                               execution::rounded_size_text(bytes));
+  throw Error(ErrorCode::budget, disk.text() + need);
 }
 
 void check_coders(const JobSize& job) {

@@ -1,6 +1,7 @@
 #include "pipeline/plan/disk_claims.h"
 
 #include "base/error.h"
+#include "pipeline/plan/build_plan.h"
 #include "storage/format/layout.h"
 #include "storage/io/forwarding_files.h"
 #include "storage/io/neighbours.h"
@@ -16,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -23,6 +25,10 @@
 
 namespace meshhier::pipeline {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
 
 constexpr std::uint64_t kNoteBytes = 20;  // a claim itself
 
@@ -113,6 +119,35 @@ TEST_F(DiskClaimsTest, WhatIsNoClaimCountsForNothing) {
   std::ofstream(storage::lock_path(storage::work_path(output("a.hier")))) << "no number";
   EXPECT_EQ(claimed_beside(output("b.hier"), *files_), 0U);
   EXPECT_EQ(claimed_beside(output("there/is/none.hier"), *files_), 0U);
+}
+
+TEST_F(DiskClaimsTest, WhoFindsTooLittleIsToldWhatIsFreeAndWhatOthersTake) {
+  const auto lock = begin("a.hier");
+  const auto message = [&](std::uint64_t claimed, const auto& ask) -> std::string {
+    claim(storage::work_path(output("a.hier")), claimed);
+    try {
+      ask();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ErrorCode::budget);
+      return error.what();
+    }
+    return "";
+  };
+  const auto import_of = [&](std::uint64_t bytes) {
+    return [this, bytes] { check_import_disk(bytes, output("b.hier"), *files_); };
+  };
+  constexpr std::uint64_t kHuge = std::uint64_t{1} << 60;
+  EXPECT_EQ(message(1000, import_of(0)), "");
+  EXPECT_THAT(message(1 << 20, import_of(kHuge)),
+              AllOf(HasSubstr(" free, of which other builds at work there will take 1.00 MiB; to "),
+                    HasSubstr("takes up to about ")));
+  for (const std::string& told : {message(kHuge, import_of(0)), message(kHuge, [&] {
+                                    check_disk({.output_bytes = 1}, output("b.hier"), *files_);
+                                  })}) {
+    EXPECT_THAT(told, HasSubstr(" free, and other builds at work there will take "));
+    EXPECT_THAT(told, HasSubstr("nothing of it is left for this one"));
+  }
+  EXPECT_THAT(message(kHuge, import_of(0)), Not(HasSubstr("0 B")));
 }
 
 TEST_F(DiskClaimsTest, BuildsInOtherFoldersOfTheDiskCount) {
