@@ -58,31 +58,20 @@ void require_two_files(const BuildArguments& arguments, storage::FileSystem& fil
   }
 }
 
-/// Whether an older note is there; in the place that nobody named, without a link to it.
-bool is_note(const storage::OutputRequest& request, storage::FileSystem& files) {
-  if (request.is_own_name &&
-      (files.is_link(request.path) || files.kind(request.path) != storage::FileKind::regular))
-    return false;
-  try {
-    storage::read_input_note(*files.open(request.path), request.path.string());
-    return true;  // it says which hierarchy it belongs to
-  } catch (const Error&) {
-    return false;
-  }
-}
-
-/// Returns the request for the note. Only an older note, or a file that --force may replace, is
-/// replaced; that is checked before the build, and after it.
+/// Returns the request for the note. Only an older note, which says whose it is, or a file that
+/// --force may replace, is replaced; that is checked before the build, and after it.
 storage::OutputRequest note_request(const BuildArguments& arguments, const config::Config& config,
                                     storage::FileSystem& files) {
   storage::OutputRequest request = output_request(arguments.input_note, arguments, config);
   request.is_own_name = request.path == pipeline::input_note_path(config, files);
-  const storage::FileKind kind = files.kind(request.path);
-  const bool is_other = kind != storage::FileKind::none || files.is_link(request.path);
+  const std::filesystem::path place =
+      request.is_own_name ? request.path : files.canonical(request.path);
+  const storage::FileKind kind = files.kind(place);
+  const bool is_other = kind != storage::FileKind::none || files.is_link(place);
   if (kind != storage::FileKind::regular && !(request.is_own_name && is_other))
     return request;
-  storage::require_apart(files, request.path, request.inputs);
-  request.replace = request.replace || is_note(request, files);
+  storage::require_apart(files, place, request.inputs);
+  request.replace = request.replace || storage::find_input_note(files, place).has_value();
   if (!request.replace) {
     throw Error(ErrorCode::exists, arguments.input_note + " is already there, and is no note of " +
                                        "a build; --force replaces it");

@@ -3,6 +3,7 @@
 #include "app/build_files.h"
 #include "app/options.h"
 #include "app/shell_word.h"
+#include "base/error.h"
 #include "base/plain_text.h"
 #include "config/named_files.h"
 #include "execution/size_text.h"
@@ -63,13 +64,27 @@ std::string up_to_date_text(const config::Config& config) {
   return output_text(config) + " is up to date";
 }
 
+/// Returns what is asked, with the place of the note that --update reads: beside the output, if
+/// none is named. Throws Error(usage) for one that cannot be read.
+BuildArguments with_note(BuildArguments asked, const config::Config& config,
+                         storage::FileSystem& files) {
+  const std::string& named = asked.input_note;
+  if (!asked.update)
+    return asked;
+  if (named.empty())
+    asked.input_note = pipeline::input_note_path(config, files).string();
+  else if (storage::is_standard_output(files, named) ||
+           files.kind(named) == storage::FileKind::stream)
+    throw Error(ErrorCode::usage,
+                "--input-note " + named + ": --update reads it again, so it must be a file");
+  return asked;
+}
+
 /// Returns why the build is due, for --update; empty if it is not.
 std::string reason_to_build(const BuildArguments& arguments, const config::Config& config,
                             execution::Progress& progress, const Environment& environment) {
-  const std::filesystem::path note = arguments.input_note.empty()
-                                         ? pipeline::input_note_path(config, environment.files)
-                                         : std::filesystem::path(arguments.input_note);
-  return pipeline::reason_to_build(config, note, {environment.files, progress, environment.cancel});
+  return pipeline::reason_to_build(config, arguments.input_note,
+                                   {environment.files, progress, environment.cancel});
 }
 
 /// Whether the output is up to date, with --update; tells that, or why it is not.
@@ -116,26 +131,32 @@ config::Config load_config(const BuildArguments& arguments, storage::FileSystem&
 
 int build_one(const BuildArguments& asked, const config::Config& config,
               execution::ProgressMode mode, const Environment& environment) {
-  BuildArguments arguments = asked;
-  if (arguments.update && arguments.input_note.empty())
-    arguments.input_note = pipeline::input_note_path(config, environment.files).string();
+  const BuildArguments arguments = with_note(asked, config, environment.files);
   BuildFiles besides(arguments, config, environment);
   const auto progress = execution::make_progress(mode, environment.messages, environment.terminal);
+  const auto before = pipeline::state_of_output(config, environment.files);
   if (is_up_to_date(arguments, config, mode, *progress, environment))
     return 0;
   besides.begin();
   tell_limits(config, mode, environment);
-  const pipeline::BuildReport report = pipeline::build_hierarchy(
-      config, {arguments.force || arguments.update, restart_of(arguments), besides.paths()},
-      {environment.files, *progress, environment.cancel});
+  pipeline::BuildOptions options{arguments.force || arguments.update, restart_of(arguments),
+                                 besides.paths()};
+  options.is_due = [&] {  // another one may have made it meanwhile
+    return pipeline::state_of_output(config, environment.files) == before ||
+           !is_up_to_date(arguments, config, mode, *progress, environment);
+  };
+  options.on_made = [&](const pipeline::BuildReport& made) { besides.write(made); };
+  const auto report =
+      pipeline::build_if_due(config, options, {environment.files, *progress, environment.cancel});
+  if (!report)
+    return 0;
   if (mode == execution::ProgressMode::json)
-    tell_warnings(report.text, *progress);
+    tell_warnings(report->text, *progress);
   progress->finish(config.output.string());
-  besides.write(report);
   std::ostream& out = besides.text_stream();
-  out << report.text;
+  out << report->text;
   if (arguments.verbose)
-    out << report.account;
+    out << report->account;
   out << "next: " << serve_line(config, environment.program) << '\n';
   return 0;
 }
@@ -144,7 +165,8 @@ std::optional<pipeline::BuildEstimate> estimate_one(const BuildArguments& argume
                                                     const config::Config& config,
                                                     execution::Progress& progress,
                                                     const Environment& environment) {
-  if (arguments.update && reason_to_build(arguments, config, progress, environment).empty())
+  const BuildArguments asked = with_note(arguments, config, environment.files);
+  if (asked.update && reason_to_build(asked, config, progress, environment).empty())
     return std::nullopt;
   return pipeline::estimate_build(config, arguments.force || arguments.update, environment.files,
                                   environment.cancel);

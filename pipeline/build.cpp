@@ -52,8 +52,13 @@ struct DropAtEnd {
 
 }  // namespace
 
-BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& options,
-                            BuildEnvironment environment) {
+BuildReport build_hierarchy(const config::Config& config, const BuildOptions& options,
+                            const BuildEnvironment& environment) {
+  return build_if_due(config, options, environment).value();
+}
+
+std::optional<BuildReport> build_if_due(const config::Config& asked, const BuildOptions& options,
+                                        BuildEnvironment environment) {
   storage::FileSystem& files = environment.files;
   config::Config config = asked;
   config.output = storage::followed(files, asked.output);
@@ -82,6 +87,10 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
   }
 
   storage::WorkDirectory work(files, output, options.force);
+  if (!options.is_due()) {
+    work.keep(files.exists(storage::journal_path(work.path())));  // of one that was stopped since
+    return std::nullopt;
+  }
   if (options.restart == Restart::always)
     work.clear();
   claim_room(work, input, plan, config, files, pool.scratch_use());
@@ -91,8 +100,10 @@ BuildReport build_hierarchy(const config::Config& asked, const BuildOptions& opt
     plan = import_and_plan(input, work, pool, config, {files, meter, environment.cancel});
   check_apart(input.files().companions(), config, options.others, files);
   try {
-    return run_stages(input, work, pool, meter, options.restart,
-                      {config, *plan, files, meter, environment.cancel});
+    BuildReport report = run_stages(input, work, pool, meter, options.restart,
+                                    {config, *plan, files, meter, environment.cancel});
+    options.on_made(report);
+    return report;
   } catch (const Error& error) {
     if (error.code() == ErrorCode::input || !options.leaves_work)
       work.keep(false);  // nothing to go on with

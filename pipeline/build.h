@@ -7,6 +7,8 @@
 #include "pipeline/plan/stage_context.h"
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <vector>
 
 namespace meshhier::pipeline {
@@ -16,6 +18,10 @@ struct BuildOptions {
   Restart restart = Restart::never;
   std::vector<std::filesystem::path> others{};  ///< files that its caller writes, besides
   bool leaves_work = true;  ///< a stopped build leaves what the next one goes on with
+  /// Asked before the work, while no other process builds the output; false: nothing is done.
+  std::function<bool()> is_due = [] { return true; };
+  /// Called when the hierarchy is there, before another process may build the output; may throw.
+  std::function<void(const BuildReport&)> on_made = [](const BuildReport&) {};
 };
 
 /// Builds config.output from config.input and returns when the hierarchy is on disk under its name.
@@ -32,6 +38,9 @@ struct BuildOptions {
 /// with another result it is refused with Error(other_work) unless `restart` says otherwise, and
 /// with Error(locked) while another process builds the output. Else nothing is left behind.
 BuildReport build_hierarchy(const config::Config& config, const BuildOptions& options,
-                            BuildEnvironment environment);
+                            const BuildEnvironment& environment);
+/// Does the same unless options.is_due says that there is nothing to do; then it returns nothing.
+std::optional<BuildReport> build_if_due(const config::Config& config, const BuildOptions& options,
+                                        BuildEnvironment environment);
 
 }  // namespace meshhier::pipeline

@@ -40,16 +40,6 @@ std::optional<storage::Manifest> read_manifest(storage::FileSystem& files, const
   }
 }
 
-std::optional<storage::InputNote> read_note(storage::FileSystem& files, const fs::path& path) {
-  if (files.is_link(path) || files.kind(path) != storage::FileKind::regular)
-    return std::nullopt;
-  try {
-    return storage::read_input_note(*files.open(path), path.string());
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
 /// Writes a note. Without it, files are only read once more.
 void keep_note(const fs::path& path, const storage::InputNote& note,
                const BuildEnvironment& environment) {
@@ -154,9 +144,20 @@ fs::path input_note_path(const config::Config& config, storage::FileSystem& file
   return storage::input_note_path(storage::followed(files, config.output));
 }
 
-std::string reason_to_build(const config::Config& config, const fs::path& note,
+std::optional<storage::FileIdentity> state_of_output(const config::Config& config,
+                                                     storage::FileSystem& files) {
+  const fs::path file =
+      files.is_directory(config.output) ? storage::manifest_path(config.output) : config.output;
+  if (files.kind(file) != storage::FileKind::regular)
+    return std::nullopt;
+  return files.identity(file);
+}
+
+std::string reason_to_build(const config::Config& config, const fs::path& named,
                             const BuildEnvironment& environment) {
   storage::FileSystem& files = environment.files;
+  const fs::path own = input_note_path(config, files);
+  const fs::path note = named == own ? own : files.canonical(named);
   const fs::path output = storage::followed(files, config.output);
   if (!storage::check_output(files, {output, config.storage.container}, true))
     return "it is not there";
@@ -166,7 +167,7 @@ std::string reason_to_build(const config::Config& config, const fs::path& note,
   InputQuestion question(config, environment);
   if (std::string difference = other_build(*manifest, question.key()); !difference.empty())
     return difference;
-  std::optional<storage::InputNote> noted = read_note(files, note);
+  std::optional<storage::InputNote> noted = storage::find_input_note(files, note);
   if (noted && noted->content == manifest->source.checksum && !noted->build.is_null())
     return question.difference(*noted, note);
   return question.difference(manifest->source, note);

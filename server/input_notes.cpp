@@ -1,6 +1,5 @@
 #include "server/input_notes.h"
 
-#include "base/error.h"
 #include "storage/format/layout.h"
 
 #include <utility>
@@ -15,13 +14,7 @@ std::filesystem::path InputNotes::path(const std::string& hierarchy) const {
 }
 
 std::optional<storage::InputNote> InputNotes::find(const std::string& hierarchy) const {
-  const std::string name = storage::input_note_path(hierarchy).string();
-  try {
-    const auto file = folder_->open(name);
-    return file ? std::optional(storage::read_input_note(*file, name)) : std::nullopt;
-  } catch (const Error&) {
-    return std::nullopt;  // the file is read instead
-  }
+  return storage::find_input_note(files_, path(hierarchy));
 }
 
 void InputNotes::write(const std::string& hierarchy, const storage::InputNote& note) const {

@@ -87,6 +87,16 @@ InputNote read_input_note(const File& file, const std::string& name) {
   }
 }
 
+std::optional<InputNote> find_input_note(FileSystem& files, const std::filesystem::path& path) {
+  if (files.is_link(path) || files.kind(path) != FileKind::regular)
+    return std::nullopt;
+  try {
+    return read_input_note(*files.open(path), path.string());
+  } catch (const Error&) {
+    return std::nullopt;  // the files are read instead
+  }
+}
+
 void write_input_note(FileSystem& files, const std::filesystem::path& path, const InputNote& note) {
   const std::string text = to_json_text(note);
   OutputFile(files, {.path = path, .replace = true, .is_own_name = true})

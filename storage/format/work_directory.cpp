@@ -187,14 +187,25 @@ WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace, fs:
 }
 
 WorkDirectory::~WorkDirectory() {
-  if (published_ || kept_ || is_shared_)
+  if (kept_ || (is_shared_ && !published_))
     return;
   try {
-    files_.remove_all(path_);  // while it is locked: who comes now finds no lock, and makes another
-    if (!made_parent_.empty() && files_.list(made_parent_).empty())
-      files_.remove_all(made_parent_);
-  } catch (const Error&) {  // the failure that brought us here is the one to report
+    remove_rest();
+  } catch (const Error&) {  // `meshhier clean` finds what is left
   }
+}
+
+void WorkDirectory::remove_rest() {
+  if (published_)
+    files_.remove_all(replaced_path(output_.path));
+  if (is_shared_) {
+    files_.remove_all(built());
+    files_.remove_all(packed());
+    return;
+  }
+  files_.remove_all(path_);  // while it is locked: who comes now finds no lock, and makes another
+  if (!published_ && !made_parent_.empty() && files_.list(made_parent_).empty())
+    files_.remove_all(made_parent_);
 }
 
 std::filesystem::path WorkDirectory::built() const {
@@ -231,16 +242,6 @@ void WorkDirectory::publish() {
     replace(from);
   published_ = true;
   kept_ = false;
-  try {
-    files_.remove_all(replaced_path(output_.path));
-    if (is_shared_) {
-      files_.remove_all(built());
-      files_.remove_all(packed());
-    } else {
-      files_.remove_all(path_);
-    }
-  } catch (const Error&) {  // the output is there; `meshhier clean` finds what is left
-  }
 }
 
 void WorkDirectory::give_name(const fs::path& from) {

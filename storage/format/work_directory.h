@@ -64,8 +64,9 @@ class WorkDirectory {
   WorkDirectory(FileSystem& files, Output output, bool replace, std::filesystem::path shared);
   WorkDirectory(const WorkDirectory&) = delete;
   WorkDirectory& operator=(const WorkDirectory&) = delete;
-  /// Removes the directory and all in it, and directories made above it, unless it is kept,
-  /// published or shared.
+  /// Removes the directory and all in it, and an output that was replaced; directories made above
+  /// it, too, if nothing was published. A kept one stays, and of a shared one all but the hierarchy
+  /// that was published.
   ~WorkDirectory();
 
   const std::filesystem::path& path() const {
@@ -80,14 +81,15 @@ class WorkDirectory {
   void keep(bool kept) { kept_ = kept; }
   bool is_kept() const { return kept_; }
 
-  /// Syncs, gives the hierarchy, or its archive, the output's name and removes the rest. A replaced
-  /// output has that name until then, without a gap where the system can exchange two names. Throws
-  /// Error(io), and Error(exists) if an output appeared that is not to be replaced; all names are
-  /// then as they were before.
+  /// Syncs, and gives the hierarchy, or its archive, the output's name; no other process may build
+  /// the output until the object goes. A replaced output has that name until then, without a gap
+  /// where the system can exchange two names. Throws Error(io), and Error(exists) if an output
+  /// appeared that is not to be replaced; all names are then as they were before.
   void publish();
 
  private:
   void sync_result();
+  void remove_rest();
   // Three ways to give the result its name; each is undone if it fails.
   void give_name(const std::filesystem::path& from);
   bool exchange(const std::filesystem::path& from);  ///< false if the system cannot

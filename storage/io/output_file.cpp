@@ -133,16 +133,12 @@ OutputFile::OutputFile(FileSystem& files, const OutputRequest& request,
                        const std::function<void()>& check)
     : files_(files), check_(check), replace_(request.replace), is_own_name_(request.is_own_name) {
   const fs::path& path = request.path;
-  if (is_own_name_) {
-    require_apart(files, path, request.inputs);
-    open_regular(request);
-    return;
-  }
-  if (is_standard_output(files, path)) {
+  if (!is_own_name_ && is_standard_output(files, path)) {
     open_stream(kSystemsStandardOutput);
     return;
   }
-  switch (files.kind(path)) {
+  const FileKind kind = is_own_name_ ? FileKind::none : files.kind(path);
+  switch (kind) {
     case FileKind::stream:
     case FileKind::standard_output:
       open_stream(path);
@@ -151,17 +147,16 @@ OutputFile::OutputFile(FileSystem& files, const OutputRequest& request,
       refuse_kind(request, "a directory");
     case FileKind::other:
       refuse_kind(request, "neither a regular file nor a FIFO nor a character device");
-    case FileKind::regular:
-      require_apart(files, request.path, request.inputs);
-      if (!replace_)
-        throw already_there(request.path, "is already there");
-      break;
     case FileKind::none:
       if (path.filename().empty() || path.filename() == "." || path.filename() == "..")
         refuse_kind(request, "no name of a file");
-      require_apart(files, request.path, request.inputs);
+      break;
+    case FileKind::regular:
       break;
   }
+  require_apart(files, path, request.inputs);
+  if (kind == FileKind::regular && !replace_)
+    throw already_there(path, "is already there");
   open_regular(request);
 }
 

@@ -1,10 +1,14 @@
 // Builds for cron and scripts: `build --update`, `build --each`, `serve --once`.
+#include "storage/io/file.h"
 #include "tests/app/command_line.h"
 #include "tests/app/small_picture.h"
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <ranges>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -255,6 +259,78 @@ TEST_F(Update, AnArchiveIsUpdatedToo) {
   EXPECT_FALSE(is_up_to_date(mesh, packed));
   EXPECT_TRUE(is_up_to_date(mesh, packed));
   EXPECT_FALSE(is_up_to_date(mesh, {"partition.vertices=500", "-o", packed[1]}));
+}
+
+TEST_F(Update, OfTwoAtOnceOneBuildsAndTheOtherFindsItDone) {
+  const auto files = storage::make_posix_file_system();
+  const fs::path lock = work() / ".a.hier.meshhier-work" / "lock";
+  for (const bool is_ply : {true, false}) {
+    const fs::path mesh = is_ply ? work() / "a.ply" : write_obj();
+    if (is_ply)
+      write_text(mesh,
+                 "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                 "property float z\nelement face 1\nproperty list uchar int vertex_indices\n"
+                 "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    fs::create_directory(lock.parent_path());
+    auto held = files->try_lock(lock);
+    std::vector<std::thread> threads;
+    std::array<Outcome, 2> outcomes;
+    const auto folder = [&](std::size_t i) { return work() / ("of " + std::to_string(i)); };
+    for (std::size_t i = 0; i < outcomes.size(); ++i) {
+      fs::create_directory(folder(i));
+      threads.emplace_back([&, i] {
+        outcomes.at(i) = run_program(update(mesh, {"--progress", "json"}), folder(i));
+      });
+    }
+    const auto both_wait = [&] {
+      return std::ranges::all_of(std::views::iota(0U, 2U), [&](std::size_t i) {
+        const fs::path messages = folder(i) / "messages";
+        return fs::exists(messages) && text_of(messages).find("outdated") != std::string::npos;
+      });
+    };
+    for (int i = 0; i < 2000 && !both_wait(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    held.reset();
+    for (std::thread& thread : threads)
+      thread.join();
+    std::size_t builds = 0;
+    for (const Outcome& outcome : outcomes) {
+      EXPECT_EQ(outcome.code, 0) << outcome.messages;
+      const bool has_built = outcome.messages.find("stage_end") != std::string::npos;
+      const bool says_so = outcome.messages.find("up_to_date") != std::string::npos;
+      EXPECT_NE(has_built, says_so) << outcome.messages;
+      builds += has_built ? 1 : 0;
+    }
+    EXPECT_EQ(builds, 1U) << mesh;
+    EXPECT_TRUE(is_up_to_date(mesh));
+    EXPECT_FALSE(fs::exists(lock.parent_path()));
+    for (const fs::path& made : {output(), note(), folder(0), folder(1)})
+      fs::remove_all(made);
+  }
+}
+
+TEST_F(Update, ALinkThatWasNamedForTheNoteIsFollowed) {
+  const Path mesh = write_mesh("a.ply"), link = work() / "link";
+  fs::create_symlink("elsewhere", link);
+  const Arguments named{"--input-note", link.string()};
+  EXPECT_FALSE(is_up_to_date(mesh, named));
+  set_time(mesh, fs::last_write_time(mesh) + std::chrono::hours(1));
+  EXPECT_TRUE(is_up_to_date(mesh, named));
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_FALSE(
+      is_up_to_date(mesh, {"--input-note", link.string(), "--set", "partition.vertices=500"}));
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_TRUE(fs::is_regular_file(work() / "elsewhere"));
+}
+
+TEST_F(Update, ANoteThatCannotBeReadAgainIsRefused) {
+  const Path mesh = write_mesh("a.ply"), fifo = work() / "fifo";
+  ASSERT_EQ(::mkfifo(fifo.c_str(), 0600), 0);
+  for (const std::string& name : {std::string("-"), fifo.string()}) {
+    EXPECT_EQ(run(update(mesh, {"--input-note", name})).code, kUsage) << name;
+    EXPECT_EQ(run(update(mesh, {"--input-note", name, "--dry-run"})).code, kUsage) << name;
+  }
+  EXPECT_FALSE(fs::exists(output()));
 }
 
 TEST_F(Update, ProgramsAreTold) {

@@ -88,13 +88,16 @@ class WorkDirectoryTest : public testing::Test {
 };
 
 TEST_F(WorkDirectoryTest, PublishingGivesTheOutputItsNameAndLeavesNothingElse) {
-  WorkDirectory work(*files_, output_, false);
-  EXPECT_TRUE(std::filesystem::is_directory(work.path()));
-  put_hierarchy(work.built(), "new");
-  write(work.path() / "scratch", "scratch");
-  EXPECT_FALSE(std::filesystem::exists(output_));
-  work.publish();
-  EXPECT_EQ(hierarchy_at(output_), "new");
+  {
+    WorkDirectory work(*files_, output_, false);
+    EXPECT_TRUE(std::filesystem::is_directory(work.path()));
+    put_hierarchy(work.built(), "new");
+    write(work.path() / "scratch", "scratch");
+    EXPECT_FALSE(std::filesystem::exists(output_));
+    work.publish();
+    EXPECT_EQ(hierarchy_at(output_), "new");
+    expect_error(ErrorCode::locked, "at work", [&] { WorkDirectory(*files_, output_, true); });
+  }
   EXPECT_FALSE(std::filesystem::exists(output_ / "scratch"));
   EXPECT_THAT(names(), ElementsAre("x.hier"));
 }
@@ -148,11 +151,13 @@ TEST_F(WorkDirectoryTest, AnExistingOutputIsRefusedAndUntouched) {
 TEST_F(WorkDirectoryTest, ForceReplacesAHierarchyAndLeavesNothingOfIt) {
   put_hierarchy(output_, "old");
   write(output_ / "tiles" / "07" / "000042.glb", "only in the old one");
-  WorkDirectory work(*files_, output_, true);
-  EXPECT_EQ(hierarchy_at(output_), "old");
-  put_hierarchy(work.built(), "new");
-  EXPECT_EQ(hierarchy_at(output_), "old");
-  work.publish();
+  {
+    WorkDirectory work(*files_, output_, true);
+    EXPECT_EQ(hierarchy_at(output_), "old");
+    put_hierarchy(work.built(), "new");
+    EXPECT_EQ(hierarchy_at(output_), "old");
+    work.publish();
+  }
   EXPECT_EQ(hierarchy_at(output_), "new");
   EXPECT_FALSE(std::filesystem::exists(output_ / "tiles" / "07"));
   EXPECT_THAT(names(), ElementsAre("x.hier"));
@@ -247,10 +252,12 @@ TEST_F(WorkDirectoryTest, AnArchiveIsPublishedAsOneFile) {
   for (const char* content : {"one", "two"}) {
     if (std::filesystem::exists(output.path))
       std::filesystem::remove(output.path);
-    WorkDirectory work(*files_, output, false);
-    put_hierarchy(work.built(), "packed already");
-    write(work.packed(), content);
-    work.publish();
+    {
+      WorkDirectory work(*files_, output, false);
+      put_hierarchy(work.built(), "packed already");
+      write(work.packed(), content);
+      work.publish();
+    }
     EXPECT_EQ(text_of(output.path), content);
     EXPECT_THAT(names(), ElementsAre("x.3tz"));
   }
@@ -363,9 +370,11 @@ TEST_F(WorkDirectoryTest, OneAtATime) {
 
 TEST_F(WorkDirectoryTest, TheReplacedHierarchyOfAKilledBuildIsRemovedInTheEnd) {
   put_hierarchy(replaced_path(output_), "old");
-  WorkDirectory work(*files_, output_, false);
-  put_hierarchy(work.built(), "new");
-  work.publish();
+  {
+    WorkDirectory work(*files_, output_, false);
+    put_hierarchy(work.built(), "new");
+    work.publish();
+  }
   EXPECT_EQ(hierarchy_at(output_), "new");
   EXPECT_THAT(names(), ElementsAre("x.hier"));
 }
@@ -463,9 +472,11 @@ TEST_P(EveryFault, IsForgottenByTheNextBuild) {
   for (const Call call :
        {Call::make_directories, Call::remove_all, Call::rename, Call::sync_tree}) {
     for (std::uint64_t n = 1; build_with_fault(call, n); ++n) {
-      WorkDirectory work(*files_, output_, true);
-      put_hierarchy(work.built(), "newer");
-      work.publish();
+      {
+        WorkDirectory work(*files_, output_, true);
+        put_hierarchy(work.built(), "newer");
+        work.publish();
+      }
       EXPECT_EQ(hierarchy_at(output_), "newer");
       EXPECT_THAT(names(), ElementsAre("x.hier"));
     }
