@@ -81,6 +81,7 @@ Examples:
   meshhier query david.hier --points scan.ply --signed -o distances.npy
   meshhier query town.3tz --rays rays.npy -o hits.npy
   meshhier query david.hier --points p.csv --error 0.05 -o quick.csv
+  meshhier query town.hier --points p.csv --where "kind = 'roof'" -o roofs.csv
   meshhier query https://example.org/david.3tz --points p.csv -o near.csv
 )";
 
@@ -110,6 +111,7 @@ void add_query_command(CLI::App& parser, Invocation& invocation) {
     arguments->options.selection = exporting::LargestError{error};
   });
   what->require_option(0, 1);
+  add_region_options(*command, arguments->options.piece);
   command->add_flag("--signed", arguments->options.has_sides,
                     "Of points: tell the side; distances are below 0 inside");
 

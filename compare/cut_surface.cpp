@@ -1,6 +1,8 @@
 #include "compare/cut_surface.h"
 
 #include "execution/parallel.h"
+#include "export/piece.h"
+#include "export/triangle_clipper.h"
 #include "hierarchy/value_channels.h"
 #include "hierarchy/vertex_numbers.h"
 
@@ -85,15 +87,23 @@ CutSurface::CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uin
 }
 
 CutSurface::CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes,
-                       execution::Progress& progress, const execution::CancelToken& cancel)
+                       execution::Progress& progress, const execution::CancelToken& cancel,
+                       exporting::Region piece)
     : CutSurface(reader, std::move(cut), cache_bytes) {
-  reader_.will_read(numbered_.cut.nodes());
+  piece_ = std::move(piece);
+  const std::vector<std::size_t> positions = tiles_in(reader_, numbered_.cut, piece_);
+  std::vector<NodeId> nodes;
+  for (const std::size_t position : positions)
+    nodes.push_back(numbered_.cut[position]);
+  reader_.will_read(nodes);
+  progress.advance(numbered_.cut.size() - positions.size());
+  facts_.assign(facts_.size(), {});
   total_ = {};
   execution::ordered_for(
-      numbered_.cut.size(), tiles_in_flight(), cancel,
-      [this](std::size_t position) { return facts_of(load(position)); },
-      [&](std::size_t position, const TileSurfaceFacts& facts) {
-        facts_[position] = facts;
+      positions.size(), tiles_in_flight(), cancel,
+      [&](std::size_t i) { return facts_of(load(positions[i])); },
+      [&](std::size_t i, const TileSurfaceFacts& facts) {
+        facts_[positions[i]] = facts;
         add(total_, facts);
         progress.advance(1);
       });
@@ -184,7 +194,30 @@ TileSurface CutSurface::load(std::size_t position) const {
     if (surface.triangles.size() > surface.facts.interior_count)
       surface.touched.push_back({tile_of(t[0]), tile_of(t[1]), tile_of(t[2])});
   }
-  return surface;
+  return piece_.is_all() ? surface : piece_of(std::move(surface));
+}
+
+TileSurface CutSurface::piece_of(TileSurface tile) const {
+  const exporting::CornerMixer mixer(reader_.tile_format().attributes, 0);
+  const exporting::TriangleClipper clipper(piece_, mixer);
+  exporting::ClippedPolygon corners(3);
+  TileSurface piece;
+  for (std::uint32_t i = 0; i < tile.triangles.size(); ++i) {
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      corners[k].position = tile.triangles[i][k];
+    if ((piece_.objects && !piece_.objects->has(tile.facts.objects[i])) ||
+        !clipper.touches(corners))
+      continue;
+    piece.triangles.push_back(tile.triangles[i]);
+    piece.facts.numbers.push_back(tile.facts.number_in_tile(i));
+    if (!tile.facts.objects.empty())
+      piece.facts.objects.push_back(tile.facts.objects[i]);
+    if (i < tile.facts.interior_count)
+      ++piece.facts.interior_count;
+    else
+      piece.touched.push_back(tile.touched[i - tile.facts.interior_count]);
+  }
+  return piece;
 }
 
 }  // namespace meshhier::comparing

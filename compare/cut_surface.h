@@ -1,4 +1,4 @@
-// The surface that a cut shows, as triangles in space, tile by tile.
+// The surface that a cut shows, or a piece of it, as triangles in space, tile by tile.
 #pragma once
 
 #include "base/bounds.h"
@@ -7,6 +7,7 @@
 #include "execution/progress.h"
 #include "export/cut_mesh.h"
 #include "export/node_cache.h"
+#include "export/region.h"
 #include "hierarchy/triangle.h"
 #include "storage/format/hierarchy_reader.h"
 
@@ -23,10 +24,14 @@ struct TriangleFacts {
   std::size_t interior_count = 0;
   std::vector<std::uint32_t> border;   ///< of border triangles the indices in the tile's border
   std::vector<std::uint32_t> objects;  ///< of all triangles; empty if the mesh has none
+  std::vector<std::uint32_t>
+      numbers;  ///< of a piece: number_in_tile() of all triangles; else empty
 
   /// Returns the number of a triangle among all of the tile's, of which others may draw some:
   /// interior ones, then the border.
   std::uint32_t number_in_tile(std::uint32_t triangle) const {
+    if (!numbers.empty())
+      return numbers[triangle];
     const auto interior = static_cast<std::uint32_t>(interior_count);
     return triangle < interior ? triangle : interior + border[triangle - interior];
   }
@@ -73,11 +78,13 @@ struct TileSurfaceFacts {
 /// The surface of a cut. Thread-safe once constructed.
 class CutSurface {
  public:
-  /// Reads every tile once, to gather its facts. `cache_bytes`: memory for positions of neighbours.
-  /// `reader` must outlive it. Advances `progress` by one for each tile. Throws Error(io | corrupt
-  /// | interrupted).
+  /// Reads every tile once, to gather its facts; of a piece, relative to the origin, those that may
+  /// show something of it: the surface has the triangles that touch it, whole, as Piece has.
+  /// `cache_bytes`: memory for positions of neighbours. `reader` must outlive it. Advances
+  /// `progress` by one for each tile of the cut. Throws Error(io | corrupt | interrupted).
   CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes,
-             execution::Progress& progress, const execution::CancelToken& cancel);
+             execution::Progress& progress, const execution::CancelToken& cancel,
+             exporting::Region piece = {});
 
   /// Reads no tile: facts are those of the index. In a cut of several levels boxes may be too small
   /// where a ghost is shown coarser; areas and flat triangles are not known.
@@ -98,9 +105,11 @@ class CutSurface {
   using Positions = std::vector<Vec3f>;
 
   Vec3f shown_position(const exporting::ShownGhost& ghost) const;
+  TileSurface piece_of(TileSurface tile) const;
 
   const storage::HierarchyReader& reader_;
   exporting::NumberedCut numbered_;
+  exporting::Region piece_;
   mutable std::mutex mutex_;  ///< guards neighbours_
   mutable exporting::NodeCache<Positions> neighbours_;
   std::vector<TileSurfaceFacts> facts_;

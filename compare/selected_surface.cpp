@@ -23,12 +23,13 @@ double error_bound(const storage::HierarchyReader& reader, const Cut& cut) {
 
 CutSurface selected_surface(const storage::HierarchyReader& reader,
                             const SurfaceSelection& selection, std::uint64_t cache_bytes,
-                            execution::Progress& progress, const execution::CancelToken& cancel) {
+                            execution::Progress& progress, const execution::CancelToken& cancel,
+                            exporting::Region piece) {
   Cut cut = selected_cut(reader, selection);
-  if (!std::holds_alternative<exporting::LargestError>(selection))
+  if (piece.is_all() && !std::holds_alternative<exporting::LargestError>(selection))
     return {reader, std::move(cut), cache_bytes};
   progress.stage("read", cut.size(), "tiles");
-  return {reader, std::move(cut), cache_bytes, progress, cancel};
+  return {reader, std::move(cut), cache_bytes, progress, cancel, std::move(piece)};
 }
 
 }  // namespace meshhier::comparing

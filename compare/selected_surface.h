@@ -5,6 +5,7 @@
 #include "execution/cancel.h"
 #include "execution/progress.h"
 #include "export/cut_by_error.h"
+#include "export/region.h"
 #include "hierarchy/cut.h"
 #include "hierarchy/ids.h"
 #include "storage/format/hierarchy_reader.h"
@@ -26,11 +27,12 @@ Cut selected_cut(const storage::HierarchyReader& reader, const SurfaceSelection&
 /// from that. What positions are rounded to is among it.
 double error_bound(const storage::HierarchyReader& reader, const Cut& cut);
 
-/// Opens the surface of the selected cut. Tiles that are chosen by their error are of several
-/// levels, so that only they tell their boxes: they are read, in the stage "read" of `progress`.
-/// Throws as CutSurface.
+/// Opens the surface of the selected cut, or a piece of it. Tiles that are chosen by their error
+/// are of several levels, so that only they tell their boxes: they are read, and so are those of a
+/// piece, in the stage "read" of `progress`. Throws as CutSurface.
 CutSurface selected_surface(const storage::HierarchyReader& reader,
                             const SurfaceSelection& selection, std::uint64_t cache_bytes,
-                            execution::Progress& progress, const execution::CancelToken& cancel);
+                            execution::Progress& progress, const execution::CancelToken& cancel,
+                            exporting::Region piece = {});
 
 }  // namespace meshhier::comparing

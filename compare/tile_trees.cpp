@@ -10,7 +10,8 @@ TileTree::TileTree(TileSurface surface)
 
 std::uint64_t TileTree::memory_bytes() const {
   return search.memory_bytes() +
-         (facts.border.size() + facts.objects.size()) * sizeof(std::uint32_t);
+         (facts.border.size() + facts.objects.size() + facts.numbers.size()) *
+             sizeof(std::uint32_t);
 }
 
 ShownTriangle TileTree::shown(std::uint32_t tile, std::uint32_t triangle) const {

@@ -55,9 +55,9 @@ class AskedObjects {
   AskedObjects(const storage::HierarchyReader& reader, const ObjectRequest& request,
                const execution::CancelToken& cancel);
 
-  /// Whether a triangle with such a corner is asked for.
-  bool has(std::span<const float> attributes) const {
-    const double object = place_.in(attributes.data());
+  /// Returns whether a triangle with such a corner, or of this object, is asked for.
+  bool has(std::span<const float> attributes) const { return has(place_.in(attributes.data())); }
+  bool has(double object) const {
     return object >= 0 && object < static_cast<double>(asked_.size()) &&
            asked_[static_cast<std::size_t>(object)];
   }

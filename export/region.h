@@ -19,6 +19,8 @@ struct Region {
   std::shared_ptr<const PlanRegion> plan;
   std::shared_ptr<const AskedObjects> objects;  ///< null: all triangles
 
+  /// Returns whether it takes whatever there is.
+  bool is_all() const { return !box && !plan && !objects; }
   /// Returns false only if no point of the box lies in it.
   bool may_meet(const BoundsD& bounds) const {
     return (!box || box->may_meet(bounds)) && (!plan || plan->may_meet(bounds));

@@ -196,9 +196,13 @@ class Query {
   QuerySummary run(storage::FileSystem& files, storage::OutputFile& output) {
     const std::uint64_t spare = spare_bytes(options_);
     const comparing::CutSurface surface =
-        selected_surface(reader_, options_.selection, spare / 8, progress_, cancel_);
+        selected_surface(reader_, options_.selection, spare / 8, progress_, cancel_,
+                         region_of(files, reader_, options_.piece, cancel_));
+    if (options_.piece.is_any() && surface.total().triangles == 0)
+      fail_empty(reader_, options_.piece);
     summary_.error_bound = comparing::error_bound(reader_, surface.cut());
-    summary_.tiles = surface.size();
+    for (std::size_t i = 0; i < surface.size(); ++i)
+      summary_.tiles += surface.facts(i).triangles > 0 ? 1 : 0;
     const auto asker = make_asker(
         surface, {options_.kind, options_.has_sides, reader_.manifest().origin, spare / 4});
     storage::MemoryPool pool(spare / 16);
@@ -247,7 +251,7 @@ QuerySummary run_query(storage::FileSystem& place, const std::filesystem::path& 
     mesh_io::require_true_ending(options.output.string(), {".csv", ".npy", ".txt"},
                                  "query writes .csv and .npy; choose one of these");
   }
-  storage::OutputRequest request{options.output, options.replace, {path}};
+  storage::OutputRequest request{options.output, options.replace, {path, options.piece.polygon}};
   if (options.rows != storage::kStandardOutput)
     request.inputs.push_back(options.rows);
   storage::OutputFile output(files, request, [&] { cancel.check(); });

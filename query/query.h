@@ -19,6 +19,7 @@
 #include "compare/selected_surface.h"
 #include "execution/cancel.h"
 #include "execution/progress.h"
+#include "export/asked_region.h"
 #include "query/answers.h"
 #include "query/row_source.h"
 #include "storage/io/file.h"
@@ -36,7 +37,8 @@ struct QueryOptions {
   RowKind kind{};
   std::filesystem::path rows{};  ///< read_rows() reads it
   comparing::SurfaceSelection selection{};
-  bool has_sides = false;  ///< of points: distances are below 0 inside
+  exporting::RegionRequest piece{};  ///< only triangles that touch it; files of it as of `rows`
+  bool has_sides = false;            ///< of points: distances are below 0 inside
   std::filesystem::path output{};
   AnswerFormat format{};
   bool replace = false;                    ///< an output that is there
@@ -55,13 +57,13 @@ struct QuerySummary {
   std::optional<double> least, largest;  ///< distances, of rays those to hits; none: there is none
   double error_bound = 0;  ///< the original surface is nowhere farther from the asked one,
                            ///< nor this one from that
-  std::uint64_t tiles = 0, tiles_read = 0;  ///< of the asked surface
+  std::uint64_t tiles = 0, tiles_read = 0;  ///< those with a part of the asked surface
 };
 
 /// Asks the hierarchy at `path` in `place`, and writes the answers to options.output, in the order
 /// of the rows; the output and its scratch lie in `files`. Throws Error(usage) for a level that is
-/// not there, points without triangles, an output that would replace what is read; Error(exists);
-/// Error(input) as read_rows(); Error(io | corrupt | interrupted).
+/// not there, a surface or a piece without triangles, an output that would replace what is read;
+/// Error(exists); Error(input) as read_rows() and region_of(); Error(io | corrupt | interrupted).
 QuerySummary run_query(storage::FileSystem& place, const std::filesystem::path& path,
                        storage::FileSystem& files, const QueryOptions& options,
                        execution::Progress& progress, const execution::CancelToken& cancel);

@@ -11,13 +11,14 @@ import os
 import re
 import secrets
 from contextlib import contextmanager
-from typing import BinaryIO, Iterator, Union
+from typing import BinaryIO, Iterator, Sequence, Union
 
 import numpy as np
 
 from .errors import ExistsError, UsageError
 
 Path = Union[str, "os.PathLike[str]"]
+Names = Union[str, Sequence[str]]
 
 
 def path_text(value: object) -> str:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Iterable, Iterator, Optional, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .asked import Path, is_web_address, length, path_text, whole
+from .asked import Names, Path, is_web_address, length, path_text, whole
 from .boxes import Box
 from .checksum import checksum
 from .cut import FEW_TILES, MANY_TILES, CutPieces
@@ -237,6 +237,11 @@ class Hierarchy:
         *,
         level: Optional[int] = None,
         error: Optional[float] = None,
+        box: Optional[Box] = None,
+        polygon: Optional[Polygon] = None,
+        crs: Optional[str] = None,
+        object: Optional[Names] = None,
+        where: Optional[str] = None,
         signed: bool = False,
         memory_budget: Union[int, str, None] = None,
     ) -> Nearest:
@@ -247,13 +252,15 @@ class Hierarchy:
             points: (n, 3), input coordinates; or one point.
             level, error: the surface of a level, or of the coarsest tiles that are no farther than this from the original one, instead of
                 this. `bound` of the result says how far it is.
+            box, polygon, crs, object, where: only triangles that touch this piece, as `meshhier.export()` takes it.
             signed: distances are below 0 inside; takes longer.
             memory_budget: bytes, or "2GiB"; 1 GiB if not given.
 
         Of triangles that are equally near, the first one of the first tile is named. Raises UsageError, ReplacedError, ProgramError,
         ProgramNotFoundError.
         """
-        return nearest(self, points, {**self._surface(error, level), "signed": signed, "memory_budget": memory_budget})
+        piece = {"box": box, "polygon": polygon, "crs": crs, "object": object, "where": where}
+        return nearest(self, points, {**self._surface(error, level), **piece, "signed": signed, "memory_budget": memory_budget})
 
     def rays(
         self,
@@ -262,15 +269,21 @@ class Hierarchy:
         *,
         level: Optional[int] = None,
         error: Optional[float] = None,
+        box: Optional[Box] = None,
+        polygon: Optional[Polygon] = None,
+        crs: Optional[str] = None,
+        object: Optional[Names] = None,
+        where: Optional[str] = None,
         memory_budget: Union[int, str, None] = None,
     ) -> Hits:
         """What each ray hits first, from either side of the surface; no ray slips through between two triangles.
 
         Args:
             origins, directions: (n, 3) each, input coordinates; or one of either for all rays. Directions have any length but 0.
-            level, error, memory_budget: as those of `nearest()`.
+            level, error, box, polygon, crs, object, where, memory_budget: as those of `nearest()`.
         """
-        return rays(self, origins, directions, {**self._surface(error, level), "memory_budget": memory_budget})
+        piece = {"box": box, "polygon": polygon, "crs": crs, "object": object, "where": where}
+        return rays(self, origins, directions, {**self._surface(error, level), **piece, "memory_budget": memory_budget})
 
     # Cuts.
 

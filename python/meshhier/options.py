@@ -257,7 +257,7 @@ COMMANDS: Mapping[str, Mapping[str, Option]] = {
     "plan": {**_SETTINGS, **_FORCE, "work": PATH, "tasks": TEXT},
     "task": {**_MEMORY, "index": TEXT, "of": TEXT, "scratch": PATH, "threads": TEXT, "status": FLAG},
     "clean": {"remove": FLAG},
-    "query": {**_MEMORY, "headers": _WEB["headers"], "level": TEXT, "error": TEXT, "signed": FLAG},
+    "query": {**_MEMORY, **_PIECE, "headers": _WEB["headers"], "level": TEXT, "error": TEXT, "signed": FLAG},
 }  # fmt: skip
 
 #: Options that no keyword stands for: how the program tells what it does, which the functions settle.

@@ -28,7 +28,7 @@ from typing import Any, Literal, Mapping, NoReturn, Optional, Sequence, Union, o
 import numpy as np
 from numpy.typing import NDArray
 
-from .asked import Path
+from .asked import Names, Path
 from .boxes import Box
 from .calls import MadeFile, make, maker, output_words, run, several
 from .errors import UsageError, VerifyError
@@ -45,7 +45,6 @@ Size = Union[int, str]
 Nodes = Union[Path, Sequence[NodeLike]]
 Vector = Union[Sequence[float], NDArray[Any]]
 Rows = Union[Sequence[Vector], NDArray[Any]]
-Names = Union[str, Sequence[str]]
 
 
 # Making hierarchies.

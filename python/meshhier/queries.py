@@ -51,7 +51,8 @@ class Nearest(_Answers):
         triangles: (n,), numbers among `Tile.triangles`.
         objects: (n,), the triangles' objects; None if the mesh has none.
         sides: (n,), 1 outside, -1 inside, 0 where that is not known: at borders; None if nobody asked.
-        bound: the original surface is no farther from the one that was asked than this, nor is this one from that.
+        bound: the original surface is no farther from the one that was asked than this, nor is this one from that. At the borders of a
+            piece, where whole triangles end, distances may differ by more.
     """
 
     sides: Optional[NDArray[np.int8]]

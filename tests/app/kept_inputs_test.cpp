@@ -124,6 +124,8 @@ const std::map<std::string, Case> kCases{
     {"query HIERARCHY", {{"query", kIn, "--points", "offset.xyz"}, "a.3tz"}},
     {"query --header",
      {{"query", "a.hier", "--points", "offset.xyz", "--header", kIn}, "headers.txt"}},
+    {"query --polygon",
+     {{"query", "a.hier", "--points", "offset.xyz", "--polygon", kIn}, "p.geojson"}},
     {"query --points", {{"query", "a.hier", "--points", kIn}, "offset.xyz"}},
     {"query --rays", {{"query", "a.hier", "--rays", kIn}, "matrix.txt"}},
     {"export HIERARCHY", {{"export", kIn, "--level", "0"}, "a.3tz"}},

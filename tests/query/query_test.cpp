@@ -7,10 +7,12 @@
 #include "compare/cut_surface.h"
 #include "compare/triangle_search.h"
 #include "execution/progress.h"
+#include "export/piece.h"
 #include "storage/format/hierarchy_reader.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -34,6 +36,13 @@ constexpr Vec3d kOrigin{1000, -50, 3};
 Vec3d noise_vector(std::uint64_t index, std::uint64_t stream) {
   return {tests::hash_noise(index, 3 * stream), tests::hash_noise(index, 3 * stream + 1),
           tests::hash_noise(index, 3 * stream + 2)};
+}
+
+Ray ray_of(const std::vector<double>& row) {
+  const Vec3d given{row[3], row[4], row[5]};
+  const double most = std::max({std::abs(given.x), std::abs(given.y), std::abs(given.z)});
+  const Vec3d way{given.x / most, given.y / most, given.z / most};
+  return {Vec3d{row[0], row[1], row[2]} - kOrigin, way * (1 / length(way))};
 }
 
 class QueryTest : public testing::Test {
@@ -184,10 +193,7 @@ TEST_F(QueryTest, RaysHitWhatTryingAllTrianglesHits) {
                                       0);
   std::uint64_t hits = 0;
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const Vec3d given{rows[i][3], rows[i][4], rows[i][5]};
-    const double most = std::max({std::abs(given.x), std::abs(given.y), std::abs(given.z)});
-    const Vec3d way{given.x / most, given.y / most, given.z / most};
-    const Ray ray(Vec3d{rows[i][0], rows[i][1], rows[i][2]} - kOrigin, way * (1 / length(way)));
+    const Ray ray = ray_of(rows[i]);
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t tile = 0; tile < surface.size(); ++tile) {
       for (const SurfaceTriangle& t : surface.load(tile).triangles)
@@ -280,6 +286,71 @@ TEST_F(QueryTest, ByErrorTheBoundHolds) {
     EXPECT_NEAR(found[i][0], exact[i][0], quick.error_bound * (1 + 1e-9));
 }
 
+TEST_F(QueryTest, OfAPieceAnswersAreThoseOfTryingTheTrianglesThatExportWrites) {
+  const auto rows = points();
+  write("points", rows);
+  std::vector<std::vector<double>> rays;
+  for (const auto& row : rows)
+    rays.push_back({row[0], row[1], row[2], kOrigin.x + 0.6 - row[0], kOrigin.y + 0.1 - row[1], 1});
+  write("rays", rays);
+  const exporting::RegionRequest piece{
+      .box = BoundsD{kOrigin + Vec3d{0.3, -0.4, -0.1}, kOrigin + Vec3d{0.9, 0.3, 9}}};
+  const storage::HierarchyReader reader(*files_, hierarchy());
+  const execution::CancelToken cancel;
+  const double error = reader.record(tests::node(1, 0)).error;
+  for (const comparing::SurfaceSelection& selection :
+       {comparing::SurfaceSelection(), comparing::SurfaceSelection(static_cast<Level>(2)),
+        comparing::SurfaceSelection(exporting::LargestError{error})}) {
+    std::vector<SurfaceTriangle> triangles;
+    exporting::Piece exported(reader, selected_cut(reader, selection),
+                              region_of(*files_, reader, piece, cancel),
+                              exporting::Clipping::whole_triangles, 0);
+    for (std::size_t i = 0; i < exported.size(); ++i) {
+      const exporting::CutPart part = exported.load(i);
+      for (const auto& [a, b, c] : part.triangles)
+        triangles.push_back(
+            {part.vertices.positions[a], part.vertices.positions[b], part.vertices.positions[c]});
+    }
+    ASSERT_GT(triangles.size(), 20U);
+    const comparing::CutSurface whole(reader, selected_cut(reader, selection), 0);
+    ASSERT_LT(triangles.size(), whole.total().triangles);
+    const auto triangle_of = [&](const std::vector<double>& answer, std::size_t column) {
+      const NodeId node = tests::node(static_cast<int>(answer[column]),
+                                      static_cast<std::uint32_t>(answer[column + 1]));
+      const auto shown = whole.load(static_cast<std::size_t>(
+          std::ranges::find(whole.cut().nodes(), node) - whole.cut().nodes().begin()));
+      std::uint32_t t = 0;
+      while (shown.facts.number_in_tile(t) != answer[column + 2])
+        ++t;
+      return shown.triangles.at(t);
+    };
+    const QuerySummary near = run({.rows = file("points"), .selection = selection, .piece = piece});
+    EXPECT_LE(near.tiles, exported.size());
+    EXPECT_EQ(near.tiles_read, near.tiles);
+    const auto found = answers();
+    for (std::size_t i = 0; i < rows.size(); i += 3) {
+      const Vec3d point = Vec3d{rows[i][0], rows[i][1], rows[i][2]} - kOrigin;
+      double least = std::numeric_limits<double>::infinity();
+      for (const SurfaceTriangle& triangle : triangles)
+        least = std::min(least, comparing::squared_distance(point, triangle));
+      ASSERT_EQ(found[i][0], std::sqrt(least));
+      ASSERT_EQ(comparing::squared_distance(point, triangle_of(found[i], 4)), least);
+    }
+    run({.kind = RowKind::rays, .rows = file("rays"), .selection = selection, .piece = piece});
+    const auto hits = answers();
+    std::size_t hit = 0;
+    for (std::size_t i = 0; i < rays.size(); i += 3) {
+      const Ray ray = ray_of(rays[i]);
+      double least = std::numeric_limits<double>::infinity();
+      for (const auto& [a, b, c] : triangles)
+        least = std::min(least, ray.hit(a, b, c).value_or(least));
+      ASSERT_EQ(hits[i][0], least);
+      hit += std::isfinite(least) ? 1 : 0;
+    }
+    EXPECT_GT(hit, 20U);
+  }
+}
+
 TEST_F(QueryTest, RefusesWhatItCannotAnswer) {
   write("points", {{0, 0, 0}});
   const auto failure = [&](QueryOptions options) {
@@ -293,6 +364,13 @@ TEST_F(QueryTest, RefusesWhatItCannotAnswer) {
   EXPECT_THAT(failure({.rows = file("points"), .selection = static_cast<Level>(9)}),
               HasSubstr("level"));
   EXPECT_THAT(failure({.rows = file("nothing")}), HasSubstr("nothing"));
+  const BoundsD away{{0, 0, 0}, {1, 1, 1}}, reversed{{1, 1, 1}, {0, 0, 0}};
+  EXPECT_THAT(failure({.rows = file("points"), .piece = {.box = away}}),
+              HasSubstr("no triangle lies in the box; the mesh reaches from"));
+  EXPECT_THAT(failure({.rows = file("points"), .piece = {.box = reversed}}),
+              HasSubstr("the box is none"));
+  EXPECT_THAT(failure({.rows = file("points"), .piece = {.objects = {.names = {"a"}}}}),
+              HasSubstr("objects"));
   EXPECT_THAT(failure({.rows = file("points"), .output = file("points")}), HasSubstr("replace"));
   EXPECT_THAT(failure({.rows = file("points"), .output = hierarchy() / "x.csv"}),
               HasSubstr("hier"));
