@@ -41,6 +41,17 @@ Bounds box_of(std::span<const SurfaceTriangle> triangles) {
   return box;
 }
 
+/// Returns whether a triangle lies beyond the plane across the way to its first corner, as far
+/// along it as `squared` says: then no point of it is nearer. The box of a triangle that is aslant
+/// is nearer than the triangle, by its size; from far away that plane is hardly. What is rounded
+/// off is a fraction of what with_rounding() adds.
+bool is_beyond(Vec3d point, const SurfaceTriangle& triangle, double squared) {
+  const Vec3d way = to_double(triangle[0]) - point;
+  const double along = std::min({dot(way, way), dot(way, to_double(triangle[1]) - point),
+                                 dot(way, to_double(triangle[2]) - point)});
+  return along > 0 && along * along > squared * dot(way, way);
+}
+
 /// Boxes so large, squared, are told apart by floats, with room for farther points.
 bool suits_floats(double squared) {
   return squared > 0x1p-80 && squared < 0x1p100;
@@ -109,6 +120,8 @@ NearTriangle TriangleSearch::first_nearest(Vec3d point, double limit, std::uint3
     return {};
   Reach reach(with_rounding(limit, squared_size_));
   const auto offer = [&](std::uint32_t triangle) {
+    if (is_beyond(point, triangles_[triangle], reach.squared))
+      return;
     const double squared = squared_distance(point, triangles_[triangle]);
     if (squared < best.squared)
       reach = Reach(with_rounding(squared, squared_size_));
