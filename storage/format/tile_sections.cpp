@@ -63,7 +63,7 @@ class Reader : SectionReader {
                    {mesh.interior, mesh.interior_wedges, shading.interior});
     read_triangles(*this, TilePart::border, numbers, shading.split_of,
                    {mesh.border, mesh.border_wedges, shading.border});
-    tile.parent_map = parent_map();
+    tile.parent_map = short_list(TilePart::parent_map, "parent map");
     tile.image = image();
     tile.normal_map = normal_map();
     tile.first_view = shape.first_view;
@@ -299,10 +299,6 @@ class Reader : SectionReader {
     return section.count == 0
                ? std::span<const std::byte>()
                : bin_.subspan(section.offset + number * section.stride, section.stride);
-  }
-
-  std::vector<std::uint16_t> parent_map() const {
-    return short_list(TilePart::parent_map, "parent map");
   }
 
   void read_ghosts(PublishedTile& tile) const {

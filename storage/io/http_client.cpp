@@ -345,13 +345,10 @@ class HttpClient::Connection {
     }
   }
 
-  struct FreeList {
-    void operator()(curl_slist* list) const { curl_slist_free_all(list); }
-  };
-  using List = std::unique_ptr<curl_slist, FreeList>;
+  using List = std::unique_ptr<curl_slist, void (*)(curl_slist*)>;
 
   static List list_of(const std::vector<std::string>& lines) {
-    List list;
+    List list(nullptr, curl_slist_free_all);
     for (const std::string& line : lines) {
       curl_slist* const more = curl_slist_append(list.get(), line.c_str());
       if (more == nullptr)

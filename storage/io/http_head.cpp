@@ -5,11 +5,6 @@
 #include "base/trimmed.h"
 
 namespace meshhier::storage {
-namespace {
-
-constexpr auto whole_number = parse_number<std::uint64_t>;
-
-}  // namespace
 
 void HttpHead::add(std::string_view line) {
   if (line.starts_with("HTTP/"))
@@ -36,7 +31,7 @@ void HttpHead::add(std::string_view line) {
 
 /// Parses a length in bytes; nothing if no file can be so long, which is noted.
 std::optional<std::uint64_t> HttpHead::length_of(std::string_view text) {
-  const std::optional<std::uint64_t> value = whole_number(text);
+  const std::optional<std::uint64_t> value = parse_number<std::uint64_t>(text);
   if (value && *value <= static_cast<std::uint64_t>(INT64_MAX))
     return value;
   if (!text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos)
@@ -53,7 +48,7 @@ void HttpHead::add_range(std::string_view value) {
   total = length_of(value.substr(slash + 1));
   const std::size_t dash = value.find('-');
   if (dash != std::string_view::npos && dash < slash)
-    first = whole_number(value.substr(kUnit.size(), dash - kUnit.size()));
+    first = parse_number<std::uint64_t>(value.substr(kUnit.size(), dash - kUnit.size()));
 }
 
 }  // namespace meshhier::storage
