@@ -1,6 +1,7 @@
 #include "import/append_mesh.h"
 
 #include "base/error.h"
+#include "mesh_io/input_error.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -29,6 +30,22 @@ void append_all(const storage::RecordSpool<Record>& from, std::uint64_t block_re
 }
 
 }  // namespace
+
+std::uint32_t next_vertex(const RawMesh& mesh, const std::filesystem::path& path,
+                          std::uint64_t more) {
+  const std::uint64_t base = mesh.vertex_count();
+  if (base + more >= UINT32_MAX)
+    mesh_io::fail_file(path, "with it the input has 2^32 vertices or more");
+  return static_cast<std::uint32_t>(base);
+}
+
+void append_triangles(std::span<const Triangle<VertexId>> triangles, std::uint32_t base,
+                      RawMesh& mesh) {
+  for (const Triangle<VertexId>& t : triangles) {
+    mesh.triangles.append(
+        Triangle<std::uint32_t>{base + raw(t[0]), base + raw(t[1]), base + raw(t[2])});
+  }
+}
 
 void append_mesh(RawMesh&& from, RawMesh& to, const execution::CancelToken& cancel) {
   const std::uint64_t base = to.vertex_count();

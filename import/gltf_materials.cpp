@@ -82,6 +82,11 @@ const GltfLook& GltfMaterials::look(std::optional<std::uint32_t> material) const
   return material ? looks_[*material] : kWhite;
 }
 
+std::string GltfMaterials::texcoords(std::optional<std::uint32_t> material) const {
+  const mesh_io::GltfTextureUse* shown = look(material).texture;
+  return "TEXCOORD_" + std::to_string(shown != nullptr ? shown->texcoord : 0);
+}
+
 GltfMaterials::Use GltfMaterials::look_up(const GltfLook& look) {
   Use use;
   if (look.texture == nullptr)

@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 namespace meshhier::importing {
@@ -44,6 +45,8 @@ class GltfMaterials {
   void use(std::optional<std::uint32_t> material, bool has_texcoords);
   /// Returns what a material shows; the default one is white.
   const GltfLook& look(std::optional<std::uint32_t> material) const;
+  /// Returns the name of the coordinates that a material's texture takes.
+  std::string texcoords(std::optional<std::uint32_t> material) const;
 
   /// Returns whether a picture is there for any triangle.
   bool is_textured() const { return is_textured_; }

@@ -48,4 +48,47 @@ GltfPrimitive::Mode PrimitiveSources::mode() const {
   return primitive_.draco ? GltfPrimitive::Mode::triangles : primitive_.mode;
 }
 
+template <class Corner>
+void PrimitiveSources::assemble(const GltfElementSource& corners, mesh_io::TriangleBlocks& blocks,
+                                const Corner& corner) const {
+  const std::uint64_t count = corners.count;
+  if (mode() == GltfPrimitive::Mode::triangles) {
+    if (count % 3 != 0) {
+      file_.fail(fmt::format("{} has {} elements for a list of triangles, expected three each",
+                             corners.name, count));
+    }
+    for (std::uint64_t i = 0; i < count; i += 3) {
+      const std::uint32_t a = corner(i), b = corner(i + 1);
+      blocks.add_triangle_face(a, b, corner(i + 2));
+    }
+  } else if (mode() == GltfPrimitive::Mode::strip) {
+    blocks.begin_strip();
+    for (std::uint64_t i = 0; i < count; ++i)
+      blocks.add_strip_corner(corner(i));
+  } else {
+    blocks.begin_polygon();
+    for (std::uint64_t i = 0; i < count; ++i)
+      blocks.add_polygon_corner(corner(i));
+  }
+}
+
+mesh_io::FaceCounts PrimitiveSources::read_triangles(const GltfElementSource& position,
+                                                     const mesh_io::TriangleVisitor& take) const {
+  mesh_io::TriangleBlocks blocks(take);
+  if (const auto source = indices()) {
+    mesh_io::GltfElements all(file_, *source);
+    assemble(*source, blocks, [&](std::uint64_t i) {
+      const double index = all.at(i)[0];
+      if (!(index < static_cast<double>(position.count))) {
+        file_.fail(fmt::format("{}: element {} is {}, but there are {} vertices", source->name, i,
+                               index, position.count));
+      }
+      return static_cast<std::uint32_t>(index);
+    });
+  } else {
+    assemble(position, blocks, [](std::uint64_t i) { return static_cast<std::uint32_t>(i); });
+  }
+  return blocks.finish();
+}
+
 }  // namespace meshhier::importing

@@ -62,8 +62,8 @@ std::unique_ptr<mesh_io::FeatureTable> GltfReader::batch_table(
   }
 }
 
-GltfImport GltfReader::import(const InputFileFacts& facts,
-                              std::shared_ptr<const storage::File> content, RawMesh& mesh) {
+AddedFile GltfReader::import(const InputFileFacts& facts,
+                             std::shared_ptr<const storage::File> content, RawMesh& mesh) {
   const mesh_io::TilesetMesh tile = facts.tile.value_or(mesh_io::TilesetMesh{});
   GltfPlace place{tile.placement, facts.tile.has_value()};
   const auto batch = batch_table(content, tile, mesh, place);

@@ -24,8 +24,8 @@ class GltfReader {
   ReadContent read(const InputFileFacts& facts) { return contents_.read(facts); }
   /// Appends the mesh of a glTF, GLB or tile to `mesh`. `content`: the file's, unpacked. Throws as
   /// import_gltf().
-  GltfImport import(const InputFileFacts& facts, std::shared_ptr<const storage::File> content,
-                    RawMesh& mesh);
+  AddedFile import(const InputFileFacts& facts, std::shared_ptr<const storage::File> content,
+                   RawMesh& mesh);
   /// Looks for the pictures of a file, and for what decodes them. Throws as best_picture().
   void look_for_pictures(const InputFileFacts& facts);
 

@@ -34,23 +34,23 @@ class Import {
         env_(environment),
         room_{environment.scratch, environment.sort_bytes, environment.cancel},
         mesh_(environment.scratch),
-        reader_(input, environment, mesh_) {
+        reader_(make_file_reader(input, environment, mesh_)) {
     if (input.objects().from != mesh_io::ObjectSource::none)
       mesh_.objects = std::make_unique<MeshObjects>(environment.scratch, input.objects());
   }
 
   ImportFacts run(TemporaryFile& ply) {
-    reader_.look_for_decoders();
+    reader_->look_for_decoders();
     env_.progress.stage("import", input_.bytes(), "bytes");
     if (input_.is_unpacked_only()) {
-      reader_.unpack(input_.all()[0], ply);
+      reader_->unpack(input_.all()[0], ply);
     } else if (input_.is_terrain()) {
-      facts_.terrain = reader_.read_terrain();
-      for (const SourceCount& one : reader_.counts())
+      facts_.terrain = reader_->read_terrain();
+      for (const SourceCount& one : reader_->facts().counts)
         count(one.name, one.count);
     } else {
       add_all(ply);
-      for (const SourceCount& one : reader_.counts())
+      for (const SourceCount& one : reader_->facts().counts)
         count(one.name, one.count);
       facts_.faces = faces_;
       if (input_.weld() || input_.crop() || unplaced_.count > 0 || !are_tiles_)
@@ -110,7 +110,7 @@ class Import {
   /// Notes the files when all is read. Pictures are read for their checksums, which is little
   /// beside decoding them.
   void note_files() {
-    CompanionFiles all = reader_.tiles();
+    CompanionFiles all = reader_->facts().tiles;
     add_others(all);
     for (const CompanionFile& library : mesh_.materials.companions().files())
       all.add(library);
@@ -127,7 +127,7 @@ class Import {
     all.await(mesh_.materials.companions().awaited());
     input_.set_companions(std::move(all));
     facts_.record =
-        input_.record(reader_.checksums(), env_.cancel, [this](const CompanionFile& file) {
+        input_.record(reader_->facts().checksums, env_.cancel, [this](const CompanionFile& file) {
           if (file.part == InputPart::buffer ||
               file.part == InputPart::tileset)  // the others were not known when the stage began
             env_.progress.advance(file.identity.bytes);
@@ -192,9 +192,9 @@ class Import {
     while (!left.empty()) {
       const std::size_t run = FileReader::run_of(left);
       if (run > 0)
-        reader_.read_run(left.first(run), [&](const AddedFile& added) { note(added); });
+        reader_->read_run(left.first(run), [&](const AddedFile& added) { note(added); });
       else
-        note(reader_.read(left[0], ply.path()));
+        note(reader_->read(left[0], ply.path()));
       left = left.subspan(std::max<std::size_t>(run, 1));
     }
   }
@@ -215,7 +215,7 @@ class Import {
   RawMesh& crop(RawMesh& whole) {
     cropped_.emplace(env_.scratch);
     count("cropped_triangles",
-          reader_.near_apart() + crop_mesh(whole, *cropped_, *input_.crop(), room_));
+          reader_->facts().near_apart + crop_mesh(whole, *cropped_, *input_.crop(), room_));
     if (cropped_->vertex_count() == 0) {
       throw Error(ErrorCode::usage, "nothing of " + input_.name() +
                                         " lies in the box of \"crop\"; compare it with where the "
@@ -299,7 +299,7 @@ class Import {
   const ImportEnvironment& env_;
   ImportRoom room_;
   RawMesh mesh_;
-  FileReader reader_;
+  std::unique_ptr<FileReader> reader_;
   std::optional<RawMesh> named_, placed_, cropped_, welded_;
   mesh_io::UnplacedVertices unplaced_;
   std::uint64_t faces_ = 0;

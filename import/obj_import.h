@@ -2,34 +2,15 @@
 // vertices.
 #pragma once
 
+#include "import/added_file.h"
 #include "import/input_files.h"
 #include "import/raw_mesh.h"
+#include "mesh_io/input_stream.h"
 #include "mesh_io/named_files.h"
-#include "mesh_io/obj_reader.h"
 
-#include <cstdint>
 #include <filesystem>
 
 namespace meshhier::importing {
-
-struct ObjImport {
-  mesh_io::ObjCounts counts;
-  AttributeLayout layout;
-  bool fits_float = true;
-  std::uint64_t split_vertices = 0;    ///< vertices that a position has beyond one
-  std::uint64_t material_colours = 0;  ///< materials' colours that vertices have
-  bool is_painted = false;             ///< vertices have no other colours
-  std::uint64_t filled_colours = 0;    ///< vertices without a colour in a file that has some: white
-  std::uint64_t hidden_colours = 0;    ///< colours of vertices that show no picture
-  std::uint64_t filled_texcoords = 0;  ///< vertices without one in a file that has some: 0 0
-  std::uint64_t filled_normals = 0;    ///< likewise: 0 0 0
-  std::uint64_t missing_libraries = 0;  ///< missing libraries that a file names
-  std::uint64_t ignored_polypaint = 0;  ///< colours of #MRGB that are not one a vertex
-  /// Names of materials that no library defines; they are white.
-  std::uint64_t undefined_materials = 0;
-  std::uint64_t byte_libraries = 0;  ///< libraries whose colours are numbers up to 255
-  std::uint64_t other_alphas = 0;  ///< materials whose map_d is another picture than map_Kd: unused
-};
 
 /// Appends the mesh of a file to `mesh`, but for its layout. Attributes that no corner refers to
 /// are no attributes. Without texture coordinates and normals vertices are the file's positions, in
@@ -50,7 +31,7 @@ struct ObjImport {
 /// the vertices where these have none: then a combination ends with the colour. If no vertex has
 /// one, only those that are to be seen (PlainColours). `files` finds the libraries and pictures.
 /// Throws as mesh_io::read_obj and read_libraries.
-ObjImport import_obj(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh,
+AddedFile import_obj(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh,
                      mesh_io::NamedFiles& files, Textures textures,
                      const mesh_io::AttributeChoice& attributes, const ImportRoom& room);
 

@@ -1,10 +1,12 @@
 #include "import/off_import.h"
 
 #include "execution/spool_cursor.h"
+#include "import/append_mesh.h"
 #include "import/face_colours.h"
 #include "import/place_lookup.h"
 #include "import/split_corners.h"
 #include "import/text_blocks.h"
+#include "mesh_io/off_reader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -82,11 +84,8 @@ void append_plain(const OffParts& parts, RawMesh& mesh, const ImportRoom& room) 
   for (std::uint64_t i = 0; i < attributes.size(); ++i)
     mesh.attributes.append(attributes.at(i));
   execution::SpoolCursor triangles(parts.triangles, room.cancel);
-  for (std::uint64_t i = 0; i < triangles.size(); ++i) {
-    const Triangle<VertexId>& t = triangles.at(i);
-    mesh.triangles.append(
-        Triangle<std::uint32_t>{base + raw(t[0]), base + raw(t[1]), base + raw(t[2])});
-  }
+  for (std::uint64_t i = 0; i < triangles.size(); ++i)
+    append_triangles(std::span(&triangles.at(i), 1), base, mesh);
 }
 
 void add_corners(const OffParts& parts, ColourType type, CornerSplitter& splitter,
@@ -129,15 +128,29 @@ void append_coloured(const OffParts& parts, const AttributeLayout& given,
   }
 }
 
+constexpr std::string_view kIgnoredFaceColours = "ignored_face_colours";
+
+AddedFile facts_of(const mesh_io::OffCounts& counts) {
+  AddedFile added{.layout = counts.attributes,
+                  .fits_float = counts.fits_float,
+                  .faces = counts.faces.faces,
+                  .degenerate_triangles = counts.faces.degenerate_triangles,
+                  .unplaced = counts.unplaced};
+  added.count(counts.faces.polygons);
+  added.count(kIgnoredFaceColours, counts.unknown_colours);
+  added.count(counts.odd);
+  added.count(counts.zeroed);
+  return added;
+}
+
 }  // namespace
 
-OffImport import_off(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh,
+AddedFile import_off(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh,
                      const ImportRoom& room) {
   OffParts parts(room.scratch);
   SpoolLookup<Vec3d> places(parts.positions);
   FaceColours colours(parts);
-  OffImport made;
-  made.counts = mesh_io::read_off(
+  const mesh_io::OffCounts counts = mesh_io::read_off(
       stream, path,
       [&](Vec3d position, std::span<const float> attributes) {
         parts.positions.append(position);
@@ -150,21 +163,19 @@ OffImport import_off(mesh_io::InputStream& stream, const std::filesystem::path& 
       [&](std::uint64_t triangles, const auto& colour) { colours.add(triangles, colour); },
       [&](std::uint32_t vertex) { return places.at(vertex); },
       parallel_blocks(mesh_io::kOffLinesBytes, room));
-  const AttributeLayout& given = made.counts.attributes;
-  made.layout = given;
-  made.ignored_colours = made.counts.unknown_colours;
-  if (colours.coloured() == 0 || given.has_colours()) {
-    made.ignored_colours += colours.coloured();
+  AddedFile added = facts_of(counts);
+  if (colours.coloured() == 0 || counts.attributes.has_colours()) {
+    added.count(kIgnoredFaceColours, colours.coloured());
     append_plain(parts, mesh, room);
-    return made;
+    return added;
   }
-  made.layout.colour = colours.type();
-  made.layout.alpha = colours.has_alpha();
-  made.white_faces = colours.plain();
+  added.layout.colour = colours.type();
+  added.layout.alpha = colours.has_alpha();
+  added.count(kFacesMadeWhite, colours.plain());
   const std::uint64_t before = mesh.vertex_count();
-  append_coloured(parts, given, made.layout, mesh, room);
-  made.split_vertices = mesh.vertex_count() - before - parts.positions.size();
-  return made;
+  append_coloured(parts, counts.attributes, added.layout, mesh, room);
+  added.count("split_vertices", mesh.vertex_count() - before - parts.positions.size());
+  return added;
 }
 
 }  // namespace meshhier::importing

@@ -1,6 +1,9 @@
 #include "import/ply_import.h"
 
+#include "base/plain_text.h"
 #include "execution/spool_cursor.h"
+#include "import/append_mesh.h"
+#include "import/crop_mesh.h"
 #include "import/face_colours.h"
 #include "import/face_values.h"
 #include "import/place_vertices.h"
@@ -8,6 +11,7 @@
 #include "import/ply_texture_faces.h"
 #include "import/split_corners.h"
 #include "import/text_blocks.h"
+#include "mesh_io/input_error.h"
 #include "mesh_io/ply_lines.h"
 #include "mesh_io/polygon_cut.h"
 
@@ -20,6 +24,8 @@
 #include <span>
 #include <utility>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace meshhier::importing {
 namespace {
@@ -62,6 +68,62 @@ struct PlyTriangles {
   std::set<std::int32_t> textures;
 };
 
+/// Notes what a block of vertices tells of the file.
+void note_block(const mesh_io::VertexBlock& block, const std::filesystem::path& path,
+                AddedFile& added) {
+  added.fits_float = added.fits_float && block.fits_float();
+  count_unplaced(block, path, added.unplaced);
+  added.count(block.zeroed);
+}
+
+void note_faces(const mesh_io::FaceCounts& counts, AddedFile& added) {
+  added.faces = counts.faces;
+  added.degenerate_triangles = counts.degenerate_triangles;
+  added.count(counts.polygons);
+}
+
+void append_blocks(mesh_io::PlySource& source, const std::filesystem::path& path, RawMesh& mesh,
+                   AddedFile& added, const ImportRoom& room) {
+  added.layout = source.description().attributes;
+  source.read_vertices(
+      [&](const mesh_io::VertexBlock& block) {
+        room.cancel.check();
+        for (const Vec3f& p : block.positions)
+          mesh.positions.append(to_double(p));
+        mesh.positions.append(block.exact);
+        mesh.attributes.append(block.attributes);
+        note_block(block, path, added);
+      },
+      parallel_blocks(mesh_io::kPlyLinesBytes, room));
+}
+
+/// Appends a file whose corners have no attributes of their own.
+AddedFile append_whole(mesh_io::PlySource& source, const std::filesystem::path& path,
+                       std::uint32_t base, RawMesh& mesh, const ImportRoom& room) {
+  AddedFile added;
+  append_blocks(source, path, mesh, added, room);
+  const auto take = [&](std::span<const Triangle<VertexId>> triangles) {
+    room.cancel.check();
+    append_triangles(triangles, base, mesh);
+  };
+  note_faces(source.read_triangles(take, parallel_blocks(mesh_io::kPlyLinesBytes, room)), added);
+  return added;
+}
+
+/// Appends the piece near a box of a file that is read in place.
+AddedFile append_piece(mesh_io::PlySource& source, const std::filesystem::path& path,
+                       const BoundsD& box, RawMesh& mesh, const ImportRoom& room) {
+  AddedFile added{.layout = source.description().attributes};
+  const std::uint64_t before = mesh.triangles.size();
+  const mesh_io::FaceCounts counts = append_near(
+      source, box, mesh, [&](const mesh_io::VertexBlock& block) { note_block(block, path, added); },
+      room);
+  added.near_apart = counts.triangles - (mesh.triangles.size() - before);
+  note_faces(counts, added);
+  return added;
+}
+
+/// Imports a file whose faces have attributes.
 class PlyImporter {
  public:
   PlyImporter(mesh_io::PlySource& source, const std::filesystem::path& path, Textures textures,
@@ -78,14 +140,14 @@ class PlyImporter {
         values_(plan_.face_values, room),
         given_(source.description().attributes) {}
 
-  PlyImport run() {
+  AddedFile run() {
     if (texcoords_ == PlyTexcoords::of_texture_faces)
       texture_faces_.emplace(source_, path_, room_);
     const mesh_io::FaceCounts read =
         source_.read_faces([this](const mesh_io::PlyFace& face) { add(face); });
     texture_faces_.reset();
-    import_.counts.faces = read.faces;
-    import_.counts.degenerate_triangles += read.degenerate_triangles;
+    counts_.faces = read.faces;
+    counts_.degenerate_triangles += read.degenerate_triangles;
     if (texcoords_ != PlyTexcoords::none)
       pictures_.emplace(plan_, path_, triangles_.textures, files_, mesh_.materials);
     is_textured_ = pictures_ && pictures_->any_is_there();
@@ -93,7 +155,10 @@ class PlyImporter {
       append_cornered();
     else
       append_plain();
-    return import_;
+    note_faces(counts_, added_);
+    added_.count(zeroed_);
+    added_.count(kHiddenColours, hidden_colours_);
+    return added_;
   }
 
  private:
@@ -118,11 +183,11 @@ class PlyImporter {
     const bool has_texcoords = !has_own_texcoords() || !face.texcoords.empty();
     const std::int32_t texture = has_texcoords ? face.texture : -1;
     for (std::size_t i = 0; i < face.texcoords.size() / 2; ++i)
-      import_.zeroed.texcoords += texcoord_of(face, i) ? 0 : 1;
-    import_.counts.degenerate_triangles += face.corners.size() < 3 ? 1 : 0;
+      zeroed_.texcoords += texcoord_of(face, i) ? 0 : 1;
+    counts_.degenerate_triangles += face.corners.size() < 3 ? 1 : 0;
     cut_.for_each_triangle(
         face.corners.size(), [&](std::size_t i) { return source_.place_of(face.corners[i]); },
-        import_.counts.polygons,
+        counts_.polygons,
         [&](std::size_t i, std::size_t j, std::size_t k) {
           add(face, {i, j, k}, texture);
         });
@@ -138,10 +203,10 @@ class PlyImporter {
         texcoords[k] = texcoord_of(face, corners[k]).value_or(Texcoord{});
     }
     if (is_degenerate(triangle.corners)) {
-      ++import_.counts.degenerate_triangles;
+      ++counts_.degenerate_triangles;
       return;
     }
-    ++import_.counts.triangles;
+    ++counts_.triangles;
     triangles_.all.append(triangle);
     if (has_own_texcoords())
       triangles_.texcoords.append(texcoords);
@@ -159,7 +224,7 @@ class PlyImporter {
     values_.compare();
     CornerSplitter splitter(source_.description().vertex_count, room_);
     is_textured_ ? add_shown_corners(splitter) : add_corners(splitter);
-    AttributeLayout& layout = import_.layout = given_;
+    AttributeLayout& layout = added_.layout = given_;
     if (is_textured_)
       layout.texcoords = layout.material = true;
     if (face_colour() != ColourType::none) {
@@ -204,7 +269,7 @@ class PlyImporter {
     triangles_.clear();
     SplitVertices vertices(room_.scratch);
     splitter.split(vertices, mesh_);
-    import_.split_vertices = vertices.count() - source_.description().vertex_count;
+    tell_of_split(vertices.count());
     SplitCursor split(vertices, room_.cancel);
     std::uint64_t next = 0;
     read_vertices([&](std::uint64_t vertex, Vec3d position, std::span<const float> attributes) {
@@ -215,6 +280,19 @@ class PlyImporter {
     });
   }
 
+  /// Warns if nearly each face has values of its own: each vertex becomes about six then.
+  void tell_of_split(std::uint64_t vertices) {
+    const std::uint64_t given = source_.description().vertex_count;
+    added_.count("split_vertices", vertices - given);
+    if (plan_.face_values.empty() || vertices - given <= given)
+      return;
+    added_.warnings.push_back(mesh_io::file_message(
+        path_,
+        fmt::format("values of faces make {} of {}, and the hierarchy larger; \"attributes\" "
+                    "of the config chooses which are read",
+                    counted(vertices, "vertices"), given)));
+  }
+
   /// Appends attributes part by part, as AttributeLayout has them.
   void append_attributes(std::span<const float> given, const CornerParts::Parts& parts) {
     const auto colours = given_.part(AttributeKind::colours).first;
@@ -223,7 +301,7 @@ class PlyImporter {
     if (face_colour() != ColourType::none) {
       const FaceColour colour = colour_of(parts, plan_.face_colour);
       mesh_.attributes.append(
-          std::span(colour).first(import_.layout.part(AttributeKind::colours).count));
+          std::span(colour).first(added_.layout.part(AttributeKind::colours).count));
     }
     mesh_.attributes.append(given.subspan(colours, texcoords - colours));
     mesh_.attributes.append(values_.channels(parts[CornerParts::kValues]));
@@ -240,7 +318,7 @@ class PlyImporter {
     std::array<float, 3> shown{0, 0, static_cast<float>(material)};
     const bool shows_picture = part > 0 && mesh_.materials.list().materials[material].image;
     if (part > 0 && !shows_picture && given_.has_colours())
-      ++import_.hidden_colours;
+      ++hidden_colours_;
     if (shows_picture) {
       const auto texcoord = given_.part(AttributeKind::texcoords).first;
       const Texcoord at = has_own_texcoords() ? Texcoord{std::bit_cast<float>(parts[kU]),
@@ -259,9 +337,7 @@ class PlyImporter {
     source_.read_vertices(
         [&](const mesh_io::VertexBlock& block) {
           room_.cancel.check();
-          import_.zeroed += block.zeroed;
-          import_.fits_float = import_.fits_float && block.fits_float();
-          count_unplaced(block, path_, import_.unplaced);
+          note_block(block, path_, added_);
           const std::size_t count = block.positions.size() + block.exact.size();
           for (std::size_t i = 0; i < count; ++i) {
             const Vec3d position =
@@ -274,11 +350,7 @@ class PlyImporter {
 
   void append_plain() {
     const std::uint64_t base = mesh_.vertex_count();
-    import_.layout = given_;
-    read_vertices([&](std::uint64_t, Vec3d position, std::span<const float> attributes) {
-      mesh_.positions.append(position);
-      mesh_.attributes.append(attributes);
-    });
+    append_blocks(source_, path_, mesh_, added_, room_);
     execution::SpoolCursor triangles(triangles_.all, room_.cancel);
     for (std::uint64_t i = 0; i < triangles.size(); ++i) {
       Triangle<std::uint32_t> t = triangles.at(i).corners;
@@ -304,15 +376,26 @@ class PlyImporter {
   mesh_io::PlyFace shown_;  ///< a face with the places of its texture face
   std::optional<PlyPictures> pictures_;
   bool is_textured_ = false;  ///< a picture is there
-  PlyImport import_;
+  mesh_io::FaceCounts counts_;
+  mesh_io::ZeroedCounts zeroed_;  ///< of polygons' corners
+  std::uint64_t hidden_colours_ = 0;
+  AddedFile added_;
 };
 
 }  // namespace
 
-PlyImport import_ply_corners(mesh_io::PlySource& source, const std::filesystem::path& path,
-                             Textures textures, RawMesh& mesh, mesh_io::NamedFiles& files,
-                             const ImportRoom& room) {
-  return PlyImporter(source, path, textures, mesh, files, room).run();
+AddedFile import_ply(mesh_io::PlySource& source, const std::filesystem::path& path,
+                     const PlyUse& use, RawMesh& mesh, mesh_io::NamedFiles& files,
+                     const ImportRoom& room) {
+  const mesh_io::MeshDescription& description = source.description();
+  const std::uint32_t base = next_vertex(mesh, path, description.vertex_count);
+  const bool is_piece = use.crop && description.vertices_in_place && description.face_count > 0;
+  AddedFile added = has_corner_attributes(source.plan(), use.textures)
+                        ? PlyImporter(source, path, use.textures, mesh, files, room).run()
+                    : is_piece ? append_piece(source, path, *use.crop, mesh, room)
+                               : append_whole(source, path, base, mesh, room);
+  added.count(source.odd_syntax());
+  return added;
 }
 
 }  // namespace meshhier::importing

@@ -1,15 +1,19 @@
 #include "import/stl_import.h"
 
 #include "base/error.h"
+#include "base/plain_text.h"
 #include "execution/spool_cursor.h"
 #include "import/text_blocks.h"
 #include "import/weld.h"
 #include "mesh_io/stl_block.h"
 #include "mesh_io/stl_colours.h"
+#include "mesh_io/stl_reader.h"
 
 #include <optional>
 #include <span>
 #include <type_traits>
+
+#include <fmt/format.h>
 
 namespace meshhier::importing {
 namespace {
@@ -26,17 +30,18 @@ class StlImporter {
         attributes_(room.scratch, kImportSpoolBytes),
         colours_(room.scratch, kImportSpoolBytes) {}
 
-  StlImport import(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh) {
+  AddedFile import(mesh_io::InputStream& stream, const std::filesystem::path& path, RawMesh& mesh) {
     read(stream, path);
-    if (made_.counts.dropped.count > made_.counts.facets / 2) {
-      throw Error(ErrorCode::input, made_.counts.dropped.first +
+    if (counts_.dropped.count > counts_.facets / 2) {
+      throw Error(ErrorCode::input, counts_.dropped.first +
                                         "; that is so of most facets, so the mesh cannot be built");
     }
     find_colours();
     const WeldCounts welded = weld_soup(corners_, has_colours_ ? &colours_ : nullptr, mesh, room_);
-    made_.welded_corners = welded.merged;
-    made_.degenerate_triangles = welded.degenerate_triangles;
-    return made_;
+    added_.degenerate_triangles = welded.degenerate_triangles;
+    added_.count("welded_corners", welded.merged);
+    tell_counts();
+    return added_;
   }
 
  private:
@@ -47,14 +52,14 @@ class StlImporter {
         append(triangle);
     };
     if constexpr (std::is_same_v<Point, Vec3f>) {
-      made_.counts = mesh_io::read_binary_stl(stream, path, take,
-                                              [&](std::span<const std::uint16_t> attributes) {
-                                                attributes_.append(attributes);
-                                                known_.add(attributes);
-                                              });
+      counts_ = mesh_io::read_binary_stl(stream, path, take,
+                                         [&](std::span<const std::uint16_t> attributes) {
+                                           attributes_.append(attributes);
+                                           known_.add(attributes);
+                                         });
     } else {
       mesh_io::StlTextReader reader(path, take, solid_visitor());
-      made_.counts = read_text_blocks<mesh_io::StlBlock>(
+      counts_ = read_text_blocks<mesh_io::StlBlock>(
           mesh_io::LineBlocks(stream, mesh_io::whole_facets), mesh_io::kStlBlockBytes,
           mesh_io::parse_facets, reader, room_);
     }
@@ -79,19 +84,33 @@ class StlImporter {
   }
 
   void find_colours() {
-    known_.set_header(made_.counts.header_colour);
+    known_.set_header(counts_.header_colour);
     has_colours_ = std::is_same_v<Point, Vec3f> && known_.any();
-    made_.ignored_attributes = has_colours_ ? 0 : made_.counts.attributes;
     if (!has_colours_)
-      return;
-    made_.layout.colour = ColourType::u8;
+      return added_.count("ignored_facet_attributes", counts_.attributes);
+    added_.layout.colour = ColourType::u8;
+    std::uint64_t white = 0;
     execution::SpoolCursor attributes(attributes_, room_.cancel);
     for (std::uint64_t i = 0; i < attributes.size(); ++i) {
       const std::optional<mesh_io::StlColour> colour = known_.colour_of(attributes.at(i));
-      made_.white_facets += colour ? 0 : 1;
+      white += colour ? 0 : 1;
       colours_.append(colour.value_or(mesh_io::StlColour{255, 255, 255}));
     }
     attributes_.clear();
+    added_.count(kFacesMadeWhite, white);
+  }
+
+  void tell_counts() {
+    added_.fits_float = counts_.fits_float;
+    added_.faces = counts_.facets;
+    added_.count("ignored_facet_normals", counts_.facets);
+    added_.count("ignored_bytes_behind", counts_.bytes_behind);
+    added_.count("dropped_facets", counts_.dropped.count);
+    added_.count(counts_.odd);
+    if (counts_.dropped.count > 0) {
+      added_.warnings.push_back(fmt::format("{}: {} left out", counts_.dropped.first,
+                                            counted(counts_.dropped.count, "such facets")));
+    }
   }
 
   const ImportRoom& room_;
@@ -102,12 +121,13 @@ class StlImporter {
   storage::RecordSpool<FacetColour> colours_;       ///< the same
   mesh_io::StlColours known_;
   bool has_colours_ = false;
-  StlImport made_;
+  mesh_io::StlCounts counts_;
+  AddedFile added_;
 };
 
 }  // namespace
 
-StlImport import_stl(StlForm form, mesh_io::InputStream& stream, const std::filesystem::path& path,
+AddedFile import_stl(StlForm form, mesh_io::InputStream& stream, const std::filesystem::path& path,
                      RawMesh& mesh, const ImportRoom& room) {
   MeshObjects* const objects = mesh.objects.get();
   return form == StlForm::binary ? StlImporter<Vec3f>(objects, room).import(stream, path, mesh)
