@@ -2,6 +2,7 @@
 
 #include "hierarchy/value_channels.h"
 #include "storage/format/section_triangles.h"
+#include "storage/format/tile_glb.h"
 #include "storage/format/tile_values.h"
 
 #include <algorithm>
