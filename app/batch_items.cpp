@@ -4,6 +4,7 @@
 #include "base/plain_text.h"
 #include "config/config.h"
 #include "config/named_files.h"
+#include "mesh_io/output_name.h"
 #include "pipeline/plan/build_plan.h"
 #include "storage/io/paths.h"
 
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestName = 4096;
 
-/// Throws Error(usage) for settings that are none, or are for one build alone.
+/// Throws Error(usage) for settings that are none, and for words that are for one build alone.
 void check_settings(const BuildArguments& arguments) {
   std::vector<std::string> settings = arguments.settings;
   for (const std::string& setting : settings) {
@@ -31,6 +32,9 @@ void check_settings(const BuildArguments& arguments) {
                       "of all outputs",
                       plain_text(setting, kLongestName)));
   }
+  mesh_io::require_true_ending(arguments.output, {},
+                               "with --each, -o names the folder of all outputs; archives are "
+                               "made in it by --set storage.container=3tz");
   settings.insert(settings.end(), {"input=mesh.ply", "output=mesh.hier"});
   config::parse_config("{}", {"--set", {}}, settings);
 }

@@ -116,6 +116,10 @@ std::string unknown_command(const std::string& word, const CLI::App& parser) {
                : "; expected one of " + listed_commands(parser));
 }
 
+std::string no_command(const CLI::App& parser) {
+  return "a command is missing; the first word is one of " + listed_commands(parser);
+}
+
 /// Tells a failure and returns the exit code. Programs that read the progress get it in the same
 /// form.
 int report_failure(ErrorCode code, const std::string& message, execution::ProgressMode mode) {
@@ -284,12 +288,14 @@ int run(int argc, char** argv, const execution::CancelToken& cancel) {
   if (argc > 1 && is_unknown_command(argv[1], names))
     return report_mistake(unknown_command(argv[1], parser), as_json);
   if (argc <= 1)
-    return report_mistake("a command is missing: " + listed_commands(parser), as_json);
+    return report_mistake(no_command(parser), as_json);
   try {
     parser.parse(words_of({argv, static_cast<std::size_t>(argc)}));
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() != 0)
-      return report_mistake(error.what(), as_json);
+    if (error.get_exit_code() != 0) {
+      return report_mistake(parser.get_subcommands().empty() ? no_command(parser) : error.what(),
+                            as_json);
+    }
     invocation.run = [&](Environment&) { return parser.exit(error); };  // --help and --version
     return execute_guarded(invocation, cancel);
   }

@@ -4,6 +4,7 @@
 #include "app/serving.h"
 #include "base/error.h"
 #include "base/named_value.h"
+#include "base/number_text.h"
 #include "server/health_question.h"
 
 #include <cstdint>
@@ -26,7 +27,9 @@ void check_folder(const std::string& option, const std::string& folder, Environm
     throw Error(ErrorCode::usage,
                 fmt::format("{} {}: it is no directory; name the one it lies in", option, folder));
   }
-  throw Error(ErrorCode::io, fmt::format("{} {}: there is no such directory", option, folder));
+  throw Error(
+      ErrorCode::io,
+      fmt::format("{} {}: there is no such directory; make it, or name another", option, folder));
 }
 
 /// Asks the server that was started with the same words; 0: its reply is what is hoped for.
@@ -178,11 +181,13 @@ void add_watch_options(CLI::App& command, ServeArguments& arguments) {
                            ->excludes(watch);
   command.add_option("--config", arguments.config, "How to build; default: all defaults")
       ->type_name("CONFIG");
-  command
-      .add_option("--settle", arguments.settle_seconds,
-                  "A file in INBOX that has not changed for so long is whole [2]")
-      ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 86400.0));
+  add_text_option(command,
+                  {"--settle", "A file in INBOX that has not changed for so long is whole [2]",
+                   "SECONDS", "a number of seconds from 0 to 86400"},
+                  [&arguments](const std::string& text) {
+                    arguments.settle_seconds = parse_finite(text).value_or(-1);
+                    return arguments.settle_seconds >= 0 && arguments.settle_seconds <= 86400;
+                  });
   CLI::Option* once = command.add_flag("--once", arguments.once,
                                        "Build what is there and due, and end; no page, no port");
   for (const char* option : {"--host", "--port", "--cors", "--frame", "--open", "--viewer"})

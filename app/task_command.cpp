@@ -103,8 +103,8 @@ SLURM_NTASKS of srun, JOB_COMPLETION_INDEX, AWS_BATCH_JOB_ARRAY_INDEX; without a
 of the stage are done, one after another. Tasks that are done already end at once, and a task may
 run twice, even at once: a scheduler may try again whatever fails.
 
-Exit codes that are worth another try: 4 (a file, a full disk, or a task before that is not done) and
-130 (interrupted). Others stay what they are.
+Exit codes that are worth another try: 4 (a file, a full disk, or a task before that is not done),
+8 (another process is at work on finish) and 130 (interrupted). Others stay what they are.
 
 Examples:
   meshhier task david.work read

@@ -126,7 +126,7 @@ Examples:
   meshhier verify david.hier --input david.ply --cuts 200 --seed 7
   meshhier verify david.3tz
   meshhier verify https://example.org/town.3tz --box 0,0,-10 200,100,90
-  meshhier verify both.hier --input a.obj.gz --input b.stl
+  meshhier verify both.hier --input left.obj.gz --input right.obj.gz
   meshhier verify david.hier --error --level 3
   meshhier verify david.hier --error --level all --samples 1000000 --json
 )";

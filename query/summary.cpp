@@ -17,8 +17,9 @@ std::string query_text(const QuerySummary& summary) {
   if (summary.error_bound > 0)
     text += fmt::format("the surface is at most {:.6g} from its original\n", summary.error_bound);
   if (summary.not_asked > 0)
-    text += fmt::format("{} {}: the answer is nan\n", summary.not_asked,
-                        are_points ? "of them have no place" : "of them lead nowhere");
+    text += fmt::format("{}: the answer is nan\n",
+                        are_points ? counted(summary.not_asked, "points") + " without a place"
+                                   : counted(summary.not_asked, "rays") + " that lead nowhere");
   if (summary.unknown_sides > 0)
     text += fmt::format(
         "of {} the side is not known: the nearest place is on a border of the "

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstddef>
 
-#include <fmt/format.h>
 #include <httplib.h>
 
 namespace meshhier::server {
@@ -31,7 +30,7 @@ HealthAnswer ask_health(const std::string& host, std::uint16_t port, Health heal
         return text.size() < kMostReplyBytes;
       });
   if (!result)
-    return {false, fmt::format("{}: no answer: {}", url, httplib::to_string(result.error()))};
+    return {false, url + ": no answer: does a server run there, with this --host and --port?"};
   text.erase(text.find_last_not_of("\r\n") + 1);
   return {result->status == 200, result->status == 404 ? url + ": another server answers there"
                                                        : plain_text(text, kMostReplyBytes)};

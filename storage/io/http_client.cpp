@@ -310,7 +310,8 @@ class HttpClient::Connection {
   static std::string failed(const HttpAddress& address, CURLcode code) {
     return passing(address, may_pass(code),
                    code == CURLE_PEER_FAILED_VERIFICATION
-                       ? "its certificate is not valid, so nobody knows who answers"
+                       ? "its certificate is not valid, so nobody knows who answers; "
+                         "CURL_CA_BUNDLE can name a file of other authorities"
                        : curl_easy_strerror(code));
   }
 

@@ -483,6 +483,12 @@ TEST_F(Each, WordsThatDoNotGoTogetherAreRefused) {
   EXPECT_EQ(run(each({a}, {"--set", "output=x.hier"})).code, kUsage);
   EXPECT_EQ(run(each({a}, {"--set", "partition.vertex=5"})).code, kUsage) << "no such key";
   EXPECT_EQ(run({"build", "--each", a, "-o", a}).code, kUsage) << "a file is no folder";
+  for (const char* name : {"all.3tz", "all.hier", "all.glb"}) {
+    const Outcome outcome = run({"build", "--each", a, "-o", work() / name});
+    EXPECT_EQ(outcome.code, kUsage) << name;
+    EXPECT_THAT(outcome.messages, HasSubstr("names the folder of all outputs"));
+    EXPECT_FALSE(fs::exists(work() / name));
+  }
   EXPECT_EQ(run({"build", a, "--update", "--force"}).code, kUsage);
 }
 

@@ -242,7 +242,7 @@ TEST_F(ServeTest, IsAskedWhetherItIsWell) {
                     ContainsRegex("method=\"GET\",status=\"5xx\"} [12]\n"),
                     HasSubstr("meshhier_models 3\n")));
   process.end(SIGTERM);
-  EXPECT_THAT(ask("alive", 1), HasSubstr("no answer"));
+  EXPECT_THAT(ask("alive", 1), HasSubstr("no answer: does a server run there"));
   std::vector<std::string> levels;
   std::istringstream lines(process.messages());
   for (std::string line; std::getline(lines, line);)
@@ -302,6 +302,8 @@ TEST_F(ServeTest, WhatIsWrongIsToldBeforeAnythingBegins) {
   fails({folder, "--config", "x.json"}, 2, "--watch");
   fails({folder, "--disk-floor", "1GiB"}, 2, "--watch");
   fails({folder, "--settle", "1"}, 2, "--inbox");
+  for (const char* seconds : {"nan", "inf", "-1", "86401", "1,5", ""})
+    fails({folder, "--watch", folder, "--settle", seconds}, 2, "from 0 to 86400");
   fails({folder, "--inbox", "nowhere"}, 4, "--inbox nowhere");
   fails({folder, "--inbox", folder, "--watch", folder}, 2, "excludes");
   fails({folder, "--watch", folder, "--upload-limit", "1G"}, 2, "requires --inbox");
