@@ -62,7 +62,7 @@ constexpr const char* kAnswer = "printf '\\000\\000\\000\\000\\002\\000\\000\\00
 constexpr const char* kReadQuestion = "head -c 11 >/dev/null";
 
 TEST_F(WorkerPoolTest, OneProcessAnswersOneAfterAnother) {
-  WorkerPool pool = this->pool("echo x >>" + path("started") + "; while " + kReadQuestion +
+  WorkerPool pool = this->pool("echo x >>'" + path("started") + "'; while " + kReadQuestion +
                                "; do " + kAnswer + "; done");
   for (int i = 0; i < 3; ++i) {
     const auto answer = ask(pool);
@@ -84,7 +84,7 @@ TEST_F(WorkerPoolTest, WhyThereIsNoAnswerIsTold) {
 }
 
 TEST_F(WorkerPoolTest, OneThatEndsIsReplacedOnce) {
-  const std::string mark = path("started");
+  const std::string mark = "'" + path("started") + "'";
   WorkerPool pool = this->pool("[ -e " + mark + " ] || { echo x >" + mark + "; exit; }; " +
                                kReadQuestion + "; " + kAnswer);
   EXPECT_EQ(text_of(ask(pool)), "ok");
