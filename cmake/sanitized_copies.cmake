@@ -19,10 +19,8 @@ function(meshhier_sanitized_copies)
     list(TRANSFORM sources PREPEND ${directory}/ REGEX "^[^/]")
     add_library(${library}_sanitized STATIC EXCLUDE_FROM_ALL ${sources})
     target_link_libraries(${library}_sanitized PUBLIC meshhier_sanitizers)
-    set_target_properties(${library}_sanitized PROPERTIES COMPILE_WARNING_AS_ERROR OFF)
-    target_compile_options(${library}_sanitized PRIVATE
-      -Og -g1 -UNDEBUG -D_GLIBCXX_ASSERTIONS
-      -fno-sanitize=object-size,vptr,pointer-overflow,nonnull-attribute,returns-nonnull-attribute)
+    set_target_properties(${library}_sanitized PROPERTIES COMPILE_WARNING_AS_ERROR OFF MESHHIER_FEWER_CHECKS ON)
+    target_compile_options(${library}_sanitized PRIVATE -Og -g1 -UNDEBUG -D_GLIBCXX_ASSERTIONS)
     foreach(property COMPILE_DEFINITIONS INCLUDE_DIRECTORIES SYSTEM UNITY_BUILD INTERFACE_INCLUDE_DIRECTORIES PRECOMPILE_HEADERS)
       get_target_property(value ${library} ${property})
       if(NOT value STREQUAL "value-NOTFOUND")
