@@ -3,8 +3,8 @@
 #include "base/small_letters.h"
 #include "base/trimmed.h"
 #include "server/line_ends.h"
-#include "storage/io/http_client.h"
 #include "storage/io/http_token.h"
+#include "storage/io/web_address.h"
 
 #include <algorithm>
 #include <string>

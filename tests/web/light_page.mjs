@@ -116,11 +116,12 @@ window.compareLight = async (url, preview, side) => {
   scene.add(camera);
   const rig = rigFor(view);
   lighting.set(rig, keyOf(rig));
-  view.setLook(shownLook(view.look, rig, 1, view));
+  const look = shownLook(view.look, rig, 1, view);
+  view.setLook(look);
   await settled(view, { width: side, height: side });
   const shown = drawn(renderer, scene, camera, side);
   const result = compare(shown, await pixelsOf(preview, side), side);
-  const kind = hasMap(view) ? 'mapped' : 'plain';
+  const kind = !hasMap(view) ? 'plain' : look.relief > 1 ? 'steep' : 'mapped';
   view.dispose();
   return { ...result, rig, kind };
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Slopes are shaded as steep as a look says, and what bends within pixels stands out, as scratches and letters do.
-import { Vector2 } from 'three';
+// Slopes are shaded as steep as a look says, and what bends within pixels stands out, as scratches and letters do. Normal maps stay as they
+// are: of slopes that are to be twenty times steeper their eight bits tell little but how they were rounded.
 import { cavitiesBy } from '../scene/materials.js';
 import type { Look } from '../scene/settings.js';
 import { replaceChunk, type Shader, type Shading } from '../scene/shading.js';
@@ -16,8 +16,6 @@ export class Relief implements PluginOf<unknown>, Shading {
   readonly name = 'relief';
   readonly shading: Shading = this;
   readonly uniforms = { relief: { value: 1 } };
-  /// The details of normal maps are as many times steeper as the surface is, along both of their axes.
-  private readonly detail = new Vector2(1, 1);
 
   key({ material }: Look): string {
     return material === 'relief' ? 'relief' : 'slopes';
@@ -29,12 +27,7 @@ export class Relief implements PluginOf<unknown>, Shading {
     shader.vertexShader = `uniform float relief;\n${shader.vertexShader}`;
   }
 
-  parameters(): { normalScale: Vector2 } {
-    return { normalScale: this.detail };
-  }
-
   show({ relief }: Look): void {
     this.uniforms.relief.value = relief;
-    this.detail.setScalar(relief);
   }
 }
