@@ -153,23 +153,30 @@ def _is_true_or(write: Callable[[Any, Files], list[str]]) -> Callable[[Any, File
     return lambda value, files: [] if value is True else write(value, files)
 
 
-# A word that names the host that a header behind it is for: it has a scheme, a dot or a port, and is no name of a header with its colon.
-_HOST = r"(?=[!-~]*(?://|\.|:[0-9]))(?![!-9;-~]+:[ \t])[!-~]+[ \t]+"
-_HEADER = rf"(?!https?:|{_HOST})[!#$%&'*+.^_`|~0-9a-z-]+:[\t -~\x80-\xff]*"
+_HEADER = re.compile(r"(?!https?:)[!#$%&'*+.^_`|~0-9a-z-]+:[\t -~\x80-\xff]*", re.ASCII | re.IGNORECASE)
+_HOST = re.compile(r"[!-~]*(//|\.|:[0-9])[!-~]*")  # has a scheme, a dot or a port
 
 
-def header_lines(headers: Any, before: str = "") -> list[str]:
-    """The lines of requests that a mapping or a list of lines stands for; `before`: a pattern of what may begin a line. Raises ValueError
-    if one is none; it has no secret."""
+def _without_host(line: str) -> str:
+    """The header of a line, without the word before it that names its host; a word whose first colon is its end is a header's name."""
+    word, *rest = re.split("[ \t]+", line, maxsplit=1)
+    is_name = word.find(":") == len(word) - 1
+    return rest[0] if rest and not is_name and _HOST.fullmatch(word) else line
+
+
+def header_lines(headers: Any, may_name_hosts: bool = False) -> list[str]:
+    """The lines of requests that a mapping or a list of lines stands for. Raises ValueError if one is none, or names a host and may not;
+    it has no secret."""
     lines = [f"{name}: {value}" for name, value in headers.items()] if isinstance(headers, Mapping) else [headers] if isinstance(headers, str) else list(headers)
-    known = re.compile(before + _HEADER, re.ASCII | re.IGNORECASE)
-    if not all(isinstance(line, str) and known.fullmatch(line) for line in lines):
-        raise ValueError('names and values of headers, {"Authorization": "Bearer ..."}')
+    for line in lines:
+        header = _without_host(line) if isinstance(line, str) else ""
+        if not _HEADER.fullmatch(header) or (header != line and not may_name_hosts):
+            raise ValueError('names and values of headers, {"Authorization": "Bearer ..."}')
     return lines
 
 
 def _headers(value: Any, files: Files) -> list[str]:
-    lines = header_lines(value, before=f"(?:{_HOST})?")
+    lines = header_lines(value, may_name_hosts=True)
     return ["@" + files.hold("headers.txt", "".join(line + "\n" for line in lines))]  # everybody can read a command line
 
 

@@ -569,6 +569,9 @@ def test_headers_of_a_comparison_go_to_the_first_host_or_the_one_they_name(host:
             assert (keys_of(host), keys_of(other)) == keys
         meshhier.compare(root / "a.hier", there, headers={"X-Key": "3"})
         assert keys_of(other) == {"3"}
+        for line in ("b.org\r\nX:5 C: d", "b.org C: d\r\nX: 5", "b.org"):
+            with pytest.raises(meshhier.UsageError, match="names and values of headers"):
+                meshhier.compare(here, there, headers=[line])
         with pytest.raises(meshhier.UsageError, match="for a host that no address here names"):
             meshhier.compare(here, there, headers=["https://example.org X-Key: 3"])
         assert keys_of(host) == keys_of(other) == set()
@@ -634,7 +637,7 @@ def test_addresses_that_are_none(address: str) -> None:
 
 
 def test_headers_that_are_none(host: Host, root: Path) -> None:
-    for headers in ({"A": "b\r\nC: d"}, {"A b": "c"}, ["none"], {"": "x"}, {"A": "\u20ac"}):
+    for headers in ({"A": "b\r\nC: d"}, {"A b": "c"}, ["b.org\r\nX:5 C: d"], ["none"], {"": "x"}, {"A": "\u20ac"}):
         with pytest.raises(meshhier.UsageError, match="headers"):
             meshhier.open(f"{host.address}/a.3tz", headers=headers)  # type: ignore[arg-type]
     with pytest.raises(meshhier.UsageError, match="addresses"):
