@@ -91,6 +91,7 @@ def _point(value: Any) -> NDArray[np.float64]:
 
 
 def _attributes(said: dict[str, Any]) -> dict[str, Any]:
+    """What the input has; four of its keys are always there."""
     return {**said, **{name: said[name] for name in ("normals", "colours", "alpha", "texcoords")}}
 
 

@@ -317,9 +317,9 @@ class ObjectTable(Sequence[ObjectRow]):
         with_box = columns.marked(count)
         corners = np.array([columns.numbers(len(with_box), "<f8") for _ in range(6)]).T.reshape(-1, 2, 3)
         boxes = dict(zip(with_box, corners))
-        triangles, areas = columns.numbers(count, "<i8"), columns.numbers(count, "<f8")
-        if min(triangles) < 0:
-            raise columns.fail("an object has fewer than no triangles")
+        triangles, areas = columns.numbers(count, "<u8"), columns.numbers(count, "<f8")
+        if max(triangles) >= 1 << 63:  # columns() has them as int64
+            raise columns.fail("an object has more triangles than a mesh can have")
         values = {name: self._read_values(columns, kind, count) for name, kind in self.properties.items()}
         columns.finish()
         return _Rows(names, [
