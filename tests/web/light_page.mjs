@@ -77,7 +77,7 @@ function hasMap(view) {
   return found;
 }
 
-/// The upright picture, its pixels grouped from a column and row on.
+/// The picture, upright: drawn so many columns and rows farther on, and read from there.
 function shifted(renderer, scene, camera, side, [right, down]) {
   camera.setViewOffset(side, side, -right, -down, side, side);
   renderer.render(scene, camera);
