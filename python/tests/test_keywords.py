@@ -32,7 +32,7 @@ CALLBACKS = {"progress", "warning", "account"}
 
 def said(*words: str) -> list[str]:
     """What a shell is told to complete after these words."""
-    run = subprocess.run([meshhier.find_program(), "complete", "--", *words], check=True, capture_output=True, text=True)
+    run = subprocess.run([meshhier.find_program(), "complete", "meshhier", *words], check=True, capture_output=True, text=True)
     return [line.split("\t")[0] for line in run.stdout.splitlines()[1:]]
 
 
