@@ -122,6 +122,7 @@ def _with_place(data: bytearray, _: int) -> None:
 
 
 def _without_name(data: bytearray, _: int) -> None:
+    """Makes the name of the first file, hierarchy.json, its extra field."""
     at = data.index(b"PK\1\2")
     data[at : at + 60] = data[at : at + 28] + bytes(2) + (14).to_bytes(2, "little") + data[at + 32 : at + 60]
 

@@ -361,7 +361,7 @@ TEST_F(HttpUploadTest, StoppingWaitsForNoSenderThatNeverPauses) {
   std::thread sender([&] {
     const RawClient client(port());
     client.send(head("a.ply", std::size_t{1} << 30));
-    while (!is_over) {  // a minute
+    while (!is_over) {  // to its end it takes a minute
       client.send(std::string(100'000, 'x'));
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
