@@ -87,12 +87,13 @@ std::optional<BuildReport> build_if_due(const config::Config& asked, const Build
   }
 
   storage::WorkDirectory work(files, output, options.force);
-  if (!options.is_due()) {
-    work.keep(files.exists(storage::journal_path(work.path())));  // of one that was stopped since
+  work.keep(files.exists(storage::journal_path(work.path())));  // of a build that was stopped
+  if (!options.is_due())
     return std::nullopt;
-  }
-  if (options.restart == Restart::always)
+  if (options.restart == Restart::always) {
     work.clear();
+    work.keep(false);
+  }
   claim_room(work, input, plan, config, files, pool.scratch_use());
   const DropAtEnd drop{input};
   StageMeter meter({environment.progress, files.counters(), pool.scratch_use()});

@@ -24,6 +24,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <limits>
 #include <map>
 #include <mutex>
@@ -570,6 +571,26 @@ TEST_F(BuildTest, NothingButTheOutputIsLeft) {
 }
 
 // ---- what is refused -----------------------------------------------------------------------
+
+TEST_F(BuildTest, WorkOfAStoppedBuildOutlivesOneThatDoesNotBegin) {
+  tests::write_ply(tests::sphere(500), mesh_path());
+  const fs::path journal = storage::journal_path(storage::work_path(output_path()));
+  fs::create_directories(journal.parent_path());
+  std::ofstream(journal) << "what is done";
+  execution::NoProgress progress;
+  const auto begin = [&](Restart restart, std::function<bool()> is_due) {
+    BuildOptions options{.restart = restart};
+    options.is_due = std::move(is_due);
+    return build_if_due(config(), options, {files_, progress, execution::CancelToken()});
+  };
+  EXPECT_FALSE(begin(Restart::never, [] { return false; }));
+  EXPECT_TRUE(fs::exists(journal)) << "it was not due";
+  EXPECT_THROW(begin(Restart::always, []() -> bool { throw Error(ErrorCode::interrupted, ""); }),
+               Error);
+  EXPECT_TRUE(fs::exists(journal)) << "it was interrupted when it asked";
+  EXPECT_TRUE(begin(Restart::always, [] { return true; }));
+  EXPECT_FALSE(fs::exists(journal.parent_path()));
+}
 
 TEST_F(BuildTest, AMeshWithoutVerticesIsRefused) {
   tests::write_ply({}, mesh_path());
