@@ -1,4 +1,4 @@
-// What the reader of a format tells of a file whose mesh it has appended.
+// Facts that the reader of a format returns about a file whose mesh it has appended.
 #pragma once
 
 #include "hierarchy/attributes.h"

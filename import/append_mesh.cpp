@@ -34,8 +34,8 @@ void append_all(const storage::RecordSpool<Record>& from, std::uint64_t block_re
 std::uint32_t next_vertex(const RawMesh& mesh, const std::filesystem::path& path,
                           std::uint64_t more) {
   const std::uint64_t base = mesh.vertex_count();
-  if (base + more >= UINT32_MAX)
-    mesh_io::fail_file(path, "with it the input has 2^32 vertices or more");
+  if (more >= UINT32_MAX || base + more >= UINT32_MAX)
+    mesh_io::fail_file(path, "with it the input has 2^32 vertices or more; split it");
   return static_cast<std::uint32_t>(base);
 }
 

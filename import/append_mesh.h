@@ -14,7 +14,8 @@ namespace meshhier::importing {
 std::uint32_t next_vertex(const RawMesh& mesh, const std::filesystem::path& path,
                           std::uint64_t more);
 
-/// Appends triangles whose vertices are numbered from `base` on.
+/// Appends triangles whose vertices are numbered from `base` on. Requires that all of these numbers
+/// are below 2^32, as next_vertex() checks.
 void append_triangles(std::span<const Triangle<VertexId>> triangles, std::uint32_t base,
                       RawMesh& mesh);
 

@@ -15,7 +15,7 @@
 
 namespace meshhier::importing {
 
-/// What is known of all files that were read.
+/// Facts about all files that were read.
 struct ReadFacts {
   std::vector<std::uint64_t> checksums;  ///< those of the files, in their order
   std::vector<SourceCount> counts;       ///< of all files together, by name
@@ -58,7 +58,7 @@ class FileReader {
   ReadFacts facts_;
 };
 
-/// Makes one that appends to `mesh`. All must outlive it.
+/// Makes a reader that appends to `mesh`. All must outlive it.
 std::unique_ptr<FileReader> make_file_reader(InputFiles& input,
                                              const ImportEnvironment& environment, RawMesh& mesh);
 

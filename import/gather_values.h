@@ -10,6 +10,7 @@
 
 namespace meshhier::importing {
 
+/// A value of the vertex, or the target, with that number.
 template <class Value>
 struct Placed {
   std::uint32_t place;
@@ -23,7 +24,9 @@ struct PlaceOf {
 };
 
 /// Gathers the values that vertices refer to, from 1 on, in the vertices' order; vertices without a
-/// reference (0) get Value{}. Two sorts, however the references jump.
+/// reference (0) get Value{}. Requires fewer than 2^32 references, each no larger than the number
+/// of values, an empty `gathered`, and a Value without padding. Two sorts, however the references
+/// jump.
 template <class Value>
 void gather(const References& references, const storage::RecordSpool<Value>& values,
             storage::RecordSpool<Value>& gathered, const ImportRoom& room) {

@@ -69,8 +69,8 @@ class ObjParts final : public mesh_io::ObjVisitor {
     if (!has_colours_)
       colours.append(colour);
   }
-  /// Returns whether colours of ZBrush count: they are those of all vertices, or of none. Asked
-  /// once all is there.
+  /// Returns whether colours of ZBrush count: they are those of all vertices, or of none, and then
+  /// goes without them. Asked once all is there.
   bool has_polypaint() {
     if (has_colours_ || colours.size() == 0)
       return false;

@@ -13,7 +13,7 @@ constexpr std::uint64_t kLeastMemory = 65536;
 constexpr std::uint64_t kReadBytes = 65536;
 /// Grain of the spools: large writes, but small beside the memory.
 constexpr std::uint64_t kSpoolBytes = 1 << 20;
-/// First capacity is about this; doubled as records come.
+/// The first capacity is about this; it doubles as records come.
 constexpr std::uint64_t kFirstBytes = 65536;
 
 }  // namespace
@@ -49,8 +49,9 @@ void ExternalRuns::make_room() {
   while (next / 2 >= least && next / 2 > capacity_)
     next /= 2;
   const Free& free = buffer_.get_deleter();
+  const std::size_t bytes = next * record_.bytes;
   std::unique_ptr<std::byte[], Free> larger(
-      static_cast<std::byte*>(::operator new(next* record_.bytes, free.alignment)), free);
+      static_cast<std::byte*>(::operator new(bytes, free.alignment)), free);
   if (filled_ > 0)
     std::memcpy(larger.get(), buffer_.get(), filled_ * record_.bytes);
   buffer_ = std::move(larger);

@@ -19,9 +19,12 @@ struct RecordShape {
   std::size_t bytes, alignment;
 };
 
+/// Keeps records of one size in a buffer and in sorted runs, and plans their merges; the derived
+/// class, which knows their order, fills the buffer, sorts it and merges. For one thread at a time.
 class ExternalRuns {
  public:
-  /// Ends adding. In parallel on the caller's TBB arena.
+  /// Ends adding; call it once. In parallel on the caller's TBB arena. Throws what the scratch file
+  /// throws.
   void sort();
 
   std::uint64_t size() const { return size_; }

@@ -31,7 +31,8 @@ struct RankedCopy {
   WedgeRank rank{};
 };
 
-/// What rank_copies() sorts by: here, so that a sort is compiled once for all of its callers.
+/// The keys that rank_copies() sorts by. They stand outside, so that a sort is compiled once for
+/// all of its callers.
 struct CopyFirst {
   std::uint32_t operator()(const CopyVertex& copy) const { return copy.first; }
 };

@@ -120,10 +120,11 @@ constexpr std::array kNumberTypes{
     number_type<std::int32_t>("i4"), number_type<std::uint32_t>("u4"),
     number_type<std::int64_t>("i8"), number_type<std::uint64_t>("u8")};
 
-/// The numbers of an array.
-class Numbers {
+/// Reads the numbers of an array.
+class NumberReader {
  public:
-  explicit Numbers(const NpyHead& head) {
+  /// Throws Error(input) for an array of anything but numbers.
+  explicit NumberReader(const NpyHead& head) {
     const std::string_view type = head.value("descr", ",");
     if (type.starts_with('['))
       head.fail(
@@ -140,7 +141,8 @@ class Numbers {
     is_swapped_ = type[1] == '>';
   }
 
-  std::size_t size() const { return type_.size; }
+  std::size_t size() const { return type_.size; }  ///< bytes of one
+  /// Appends the numbers in `bytes`, whole ones, whose order it may turn.
   void append(std::span<std::byte> bytes, std::vector<double>& numbers) const {
     for (; !bytes.empty(); bytes = bytes.subspan(size())) {
       if (is_swapped_)
@@ -163,8 +165,8 @@ bool is_npy(std::string_view start) {
 std::uint64_t read_npy_rows(mesh_io::InputStream& stream, const std::string& name, RowKind kind,
                             const RowVisitor& visit) {
   const NpyHead head(stream, name);
-  const Numbers of_type(head);
-  const std::size_t row_bytes = of_type.size() * columns_of(kind);
+  const NumberReader reader(head);
+  const std::size_t row_bytes = reader.size() * columns_of(kind);
   const std::uint64_t rows = rows_of(head, kind);
   std::vector<std::byte> bytes;
   std::vector<double> numbers;
@@ -174,7 +176,7 @@ std::uint64_t read_npy_rows(mesh_io::InputStream& stream, const std::string& nam
     if (const std::size_t there = stream.read(bytes); there < bytes.size())
       head.fail(fmt::format("it ends in row {} of {}", read + there / row_bytes, rows));
     numbers.clear();
-    of_type.append(bytes, numbers);
+    reader.append(bytes, numbers);
     visit(numbers);
     read += count;
   }

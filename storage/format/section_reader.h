@@ -21,10 +21,12 @@ struct TileSections {
   bool is_packed = false;  ///< triangles are as the codec gave them, turned and in another order
 };
 
-/// What readers of sections share. Elements are below the count of their section.
+/// Reads single numbers of sections, for readers of whole tiles and of their triangles. Nothing is
+/// checked: elements must be below the count of their section. Not to be kept: it refers to all
+/// that it was made of.
 class SectionReader {
  public:
-  /// All must outlive it.
+  /// `name`: for messages. All must outlive it.
   SectionReader(const TileSections& sections, const Tree& tree, const std::string& name)
       : plan_(sections.plan),
         bin_(sections.bin),

@@ -20,11 +20,10 @@ struct HttpOptions {
   std::chrono::seconds silence{30};  ///< without a byte: then a try is over, answered or not
 };
 
-/// What a file is not read for that a host packs on its way.
+/// The failure of a file that a host packs on its way: then parts are those of the packed file.
 inline constexpr const char* kSentPacked =
-    "the host sends it packed (Content-Encoding), and then parts of it say nothing: switch that "
-    "off "
-    "for these files";
+    "the host sends it packed (Content-Encoding), and then parts of it say nothing: "
+    "switch that off for these files";
 
 /// The address of a file on the web.
 struct HttpAddress {

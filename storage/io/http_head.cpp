@@ -22,7 +22,7 @@ void HttpHead::add(std::string_view line) {
   else if (name == "last-modified")
     modified_ = value;
   else if (name == "content-encoding")
-    encoding = value == "identity" ? "" : value;
+    encoding = small_letters(value) == "identity" ? "" : value;
   else if (name == "content-length")
     length = length_of(value);
   else if (name == "content-range")

@@ -19,6 +19,7 @@ struct HttpHead {
   std::size_t bytes = 0;                ///< size of the header so far
   bool is_complete = false;             ///< all of it has come
 
+  /// Takes a line, with its end. Unknown headers and lines that are none only count as bytes.
   void add(std::string_view line);
   /// Returns the file's ETag, else Last-Modified; empty: not known.
   const std::string& version() const { return etag_.empty() ? modified_ : etag_; }
