@@ -14,6 +14,7 @@
 #include "storage/format/work_directory.h"
 
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -22,6 +23,13 @@ namespace meshhier::pipeline {
 namespace {
 
 // From the whole to its parts: the definitions follow in this order.
+
+/// Does in the locked directory what is left to do once the build can begin: imports the mesh if it
+/// was not planned yet, then does the other stages.
+BuildReport build_in(storage::WorkDirectory& work, importing::MeshInput& input,
+                     std::optional<BuildPlan> plan, storage::MemoryPool& pool,
+                     const config::Config& config, const BuildOptions& options,
+                     const BuildEnvironment& environment);
 
 /// Does all stages but import, then gives the hierarchy its name.
 BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work,
@@ -39,7 +47,11 @@ DiskNeed make_hierarchy(Workshop& workshop, const std::filesystem::path& directo
 Error with_resume_hint(const Error& error, const storage::WorkDirectory& work,
                        const std::filesystem::path& output);
 
-/// Claims the disk that is needed, as far as it is known; throws Error(budget) if there is less.
+/// Throws Error(budget) if there is less disk than is needed, as far as that is known.
+void check_room(const importing::MeshInput& input, const std::optional<BuildPlan>& plan,
+                const config::Config& config, storage::FileSystem& files);
+
+/// Claims the disk that is needed, and throws as check_room().
 void claim_room(const storage::WorkDirectory& work, const importing::MeshInput& input,
                 const std::optional<BuildPlan>& plan, const config::Config& config,
                 storage::FileSystem& files, storage::ScratchUse& use);
@@ -79,17 +91,24 @@ std::optional<BuildReport> build_if_due(const config::Config& asked, const Build
   const storage::Output output(config.output, config.storage.container);
   storage::check_output(files, output, options.force);
   storage::check_place(files, config.output);
-  if (plan) {
+  if (plan)
     check_coders(plan->job);
-    check_disk(plan->disk, config.output, files);
-  } else {
-    check_import_disk(import_disk(input, config), config.output, files);
-  }
+  check_room(input, plan, config, files);
 
   storage::WorkDirectory work(files, output, options.force);
   work.keep(files.exists(storage::journal_path(work.path())));  // of a build that was stopped
   if (!options.is_due())
     return std::nullopt;
+  return build_in(work, input, std::move(plan), pool, config, options, environment);
+}
+
+namespace {
+
+BuildReport build_in(storage::WorkDirectory& work, importing::MeshInput& input,
+                     std::optional<BuildPlan> plan, storage::MemoryPool& pool,
+                     const config::Config& config, const BuildOptions& options,
+                     const BuildEnvironment& environment) {
+  storage::FileSystem& files = environment.files;
   if (options.restart == Restart::always) {
     work.clear();
     work.keep(false);
@@ -113,20 +132,6 @@ std::optional<BuildReport> build_if_due(const config::Config& asked, const Build
       throw;
     throw with_resume_hint(error, work, config.output);
   }
-}
-
-namespace {
-
-void claim_room(const storage::WorkDirectory& work, const importing::MeshInput& input,
-                const std::optional<BuildPlan>& plan, const config::Config& config,
-                storage::FileSystem& files, storage::ScratchUse& use) {
-  const std::uint64_t bytes = plan ? plan->disk.room_bytes : import_disk(input, config);
-  claim_disk(work.path(), bytes, files, use, [&] {
-    if (plan)
-      check_disk(plan->disk, config.output, files);
-    else
-      check_import_disk(bytes, config.output, files);
-  });
 }
 
 /// Bytes that went to files which are not temporary.
@@ -201,6 +206,21 @@ Error with_resume_hint(const Error& error, const storage::WorkDirectory& work,
           fmt::format("{}\nWhat is done so far is kept in {}: the same build goes on with it "
                       "(--restart begins anew, \"meshhier clean --remove {}\" removes it)",
                       error.what(), work.path().string(), output.string())};
+}
+
+void check_room(const importing::MeshInput& input, const std::optional<BuildPlan>& plan,
+                const config::Config& config, storage::FileSystem& files) {
+  if (plan)
+    check_disk(plan->disk, config.output, files);
+  else
+    check_import_disk(import_disk(input, config), config.output, files);
+}
+
+void claim_room(const storage::WorkDirectory& work, const importing::MeshInput& input,
+                const std::optional<BuildPlan>& plan, const config::Config& config,
+                storage::FileSystem& files, storage::ScratchUse& use) {
+  const std::uint64_t bytes = plan ? plan->disk.room_bytes : import_disk(input, config);
+  claim_disk(work.path(), bytes, files, use, [&] { check_room(input, plan, config, files); });
 }
 
 }  // namespace
