@@ -134,8 +134,10 @@ class NumberReader {
              type.substr(2, 2) == known.name;
     });
     if (found == kNumberTypes.end()) {
-      head.fail(fmt::format("expected numbers, found the type {}: save array.astype(\"float64\")",
-                            plain_text(type, 60)));
+      head.fail(
+          fmt::format("expected float64, float32 or integers, found the type {}: save "
+                      "array.astype(\"float64\")",
+                      plain_text(type, 60)));
     }
     type_ = *found;
     is_swapped_ = type[1] == '>';
