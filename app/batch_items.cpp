@@ -81,7 +81,7 @@ std::vector<BatchItem> plan_items(const BuildArguments& arguments, storage::File
   std::set<fs::path> inputs;
   std::map<fs::path, std::string> makers;
   for (const std::string& input : arguments.named) {
-    const fs::path normal = fs::path(input).lexically_normal();
+    const fs::path normal = fs::absolute(input).lexically_normal();
     if (!inputs.insert(storage::without_last_slash(normal)).second)
       continue;
     items.push_back(plan_item(input, arguments, files));
