@@ -64,8 +64,7 @@ storage::OutputRequest note_request(const BuildArguments& arguments, const confi
                                     storage::FileSystem& files) {
   storage::OutputRequest request = output_request(arguments.input_note, arguments, config);
   request.is_own_name = request.path == pipeline::input_note_path(config, files);
-  const std::filesystem::path place =
-      request.is_own_name ? request.path : files.canonical(request.path);
+  const std::filesystem::path place = pipeline::followed_note(config, request.path, files);
   const storage::FileKind kind = files.kind(place);
   const bool is_other = kind != storage::FileKind::none || files.is_link(place);
   if (kind != storage::FileKind::regular && !(request.is_own_name && is_other))

@@ -144,6 +144,11 @@ fs::path input_note_path(const config::Config& config, storage::FileSystem& file
   return storage::input_note_path(storage::followed(files, config.output));
 }
 
+fs::path followed_note(const config::Config& config, const fs::path& named,
+                       storage::FileSystem& files) {
+  return named == input_note_path(config, files) ? named : files.canonical(named);
+}
+
 std::optional<storage::FileIdentity> state_of_output(const config::Config& config,
                                                      storage::FileSystem& files) {
   const fs::path file =
@@ -156,8 +161,7 @@ std::optional<storage::FileIdentity> state_of_output(const config::Config& confi
 std::string reason_to_build(const config::Config& config, const fs::path& named,
                             const BuildEnvironment& environment) {
   storage::FileSystem& files = environment.files;
-  const fs::path own = input_note_path(config, files);
-  const fs::path note = named == own ? own : files.canonical(named);
+  const fs::path note = followed_note(config, named, files);
   const fs::path output = storage::followed(files, config.output);
   if (!storage::check_output(files, {output, config.storage.container}, true))
     return "it is not there";

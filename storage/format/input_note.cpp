@@ -93,7 +93,7 @@ std::optional<InputNote> find_input_note(FileSystem& files, const std::filesyste
   try {
     return read_input_note(*files.open(path), path.string());
   } catch (const Error&) {
-    return std::nullopt;  // the files are read instead
+    return std::nullopt;
   }
 }
 

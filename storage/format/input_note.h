@@ -34,8 +34,8 @@ struct InputNote {
 std::string to_json_text(const InputNote& note);
 /// Reads such a file. Throws Error(io), Error(corrupt) that starts with `name`.
 InputNote read_input_note(const File& file, const std::string& name);
-/// Returns the note in a place that nobody named: nothing if there is none, it is damaged, or it is
-/// no regular file, as a link. Never throws for what lies there.
+/// Returns the note in a place, through no link: nothing if there is none, it is damaged, or it is
+/// no regular file. Never throws for what lies there.
 std::optional<InputNote> find_input_note(FileSystem& files, const std::filesystem::path& path);
 /// Writes a note in the place of an older one; it is there complete or not at all. Throws as
 /// OutputFile.
