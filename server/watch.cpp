@@ -301,8 +301,7 @@ InputVersion Watch::version_of(const std::string& name) const {
 
 /// Whether another process builds there. A build would wait for it as well, but not as long.
 bool Watch::is_in_hand(const BuildTarget& target) {
-  const std::filesystem::path work = storage::work_path(options_.folder / target.name);
-  return files_.exists(work) && files_.try_lock(storage::lock_path(work)) == nullptr;
+  return files_.is_locked(storage::lock_path(storage::work_path(options_.folder / target.name)));
 }
 
 void Watch::put_off(const std::string& name, const std::string& message, int code) {

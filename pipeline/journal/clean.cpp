@@ -35,8 +35,7 @@ bool is_leftover(storage::FileSystem& files, Leftover kind, const fs::path& outp
 }
 
 bool is_in_use(storage::FileSystem& files, const FoundLeftover& leftover) {
-  return leftover.kind == Leftover::build && files.exists(storage::lock_path(leftover.path)) &&
-         files.try_lock(storage::lock_path(leftover.path)) == nullptr;
+  return leftover.kind == Leftover::build && files.is_locked(storage::lock_path(leftover.path));
 }
 
 std::uint64_t bytes_of(storage::FileSystem& files, const FoundLeftover& leftover) {

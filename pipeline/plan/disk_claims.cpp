@@ -30,12 +30,6 @@ std::uint64_t read_claim(const fs::path& lock, storage::FileSystem& files) {
   return bytes;
 }
 
-bool is_at_work(const fs::path& lock, storage::FileSystem& files) {
-  if (const auto* shared = dynamic_cast<const storage::SharedFileSystem*>(&files))
-    return shared->is_locked(lock);
-  return files.exists(lock) && files.try_lock(lock) == nullptr;
-}
-
 /// Returns the bytes of a build's files; 0 if one may not be read, or has gone while they are
 /// counted, as temporary ones do.
 std::uint64_t written_in(const fs::path& work, storage::FileSystem& files) {
@@ -50,10 +44,10 @@ std::uint64_t written_in(const fs::path& work, storage::FileSystem& files) {
 std::uint64_t left_of_claim(const fs::path& work, storage::FileSystem& files) {
   try {
     const fs::path lock = storage::lock_path(work);
-    if (!is_at_work(lock, files))
+    if (!files.is_locked(lock))
       return 0;
     const std::uint64_t claimed = read_claim(lock, files), written = written_in(work, files);
-    return is_at_work(lock, files) ? claimed - std::min(claimed, written) : 0;
+    return files.is_locked(lock) ? claimed - std::min(claimed, written) : 0;
   } catch (const Error&) {  // it has just ended
     return 0;
   }

@@ -1,6 +1,7 @@
 #include "storage/io/file.h"
 
 #include "base/error.h"
+#include "storage/io/descriptor.h"
 #include "storage/io/link_free_paths.h"
 #include "storage/io/neighbours.h"
 #include "storage/io/posix_file.h"
@@ -13,6 +14,7 @@
 #include <cstdio>
 #include <cstring>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include <fcntl.h>
@@ -44,18 +46,36 @@ bool is_same_file(int descriptor, const std::filesystem::path& path) {
 
 class PosixLock final : public FileLock {
  public:
-  PosixLock(std::filesystem::path path, int descriptor)
-      : path_(std::move(path)), descriptor_(descriptor) {}
+  PosixLock(std::filesystem::path path, Descriptor file)
+      : path_(std::move(path)), file_(std::move(file)) {}
   ~PosixLock() override {
-    if (is_same_file(descriptor_, path_))
+    if (is_same_file(file_.number(), path_))
       ::unlink(path_.c_str());  // while it is locked: whoever waits finds another file, or none
-    ::close(descriptor_);
   }
 
  private:
   std::filesystem::path path_;
-  int descriptor_;
+  Descriptor file_;
 };
+
+/// Whether another descriptor holds the file's lock. Takes a shared one for a moment, which others
+/// who ask do not count.
+bool is_held(int descriptor) {
+  if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0)
+    return errno == EWOULDBLOCK;
+  ::flock(descriptor, LOCK_UN);
+  return false;
+}
+
+/// std::filesystem::weakly_canonical(), again where a part of the path goes while it is looked at.
+std::filesystem::path without_links(const std::filesystem::path& path, std::error_code& error) {
+  constexpr int kTries = 1000;
+  for (int i = 1;; ++i) {
+    std::filesystem::path found = std::filesystem::weakly_canonical(path, error);
+    if (error != std::errc::no_such_file_or_directory || i == kTries)
+      return found;
+  }
+}
 
 /// Gives `by` the mode of the regular file that it will replace; where that fails, it keeps its
 /// own.
@@ -96,9 +116,6 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
                                                   std::string_view ending) const override {
     return storage::locked_files(directory, ending);
   }
-  bool is_locked(const std::filesystem::path& file) const override {
-    return storage::is_locked(file);
-  }
 
   FileSystem& input() override { return with_archives_; }
 
@@ -132,20 +149,25 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
 
   std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) override {
     for (;;) {
-      const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-      if (descriptor < 0)
+      Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
+      if (!file.is_open())
         fail_system("create", path, errno);
-      if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
-        const int error = errno;
-        ::close(descriptor);
-        if (error == EWOULDBLOCK)
+      if (::flock(file.number(), LOCK_EX | LOCK_NB) != 0) {
+        if (errno != EWOULDBLOCK)
+          fail_system("lock", path, errno);
+        if (is_held(file.number()))
           return nullptr;
-        fail_system("lock", path, error);
-      }
-      if (is_same_file(descriptor, path))
-        return std::make_unique<PosixLock>(path, descriptor);
-      ::close(descriptor);  // the one who held it has just removed it
+        std::this_thread::yield();  // to one that asks whether it is locked
+      } else if (is_same_file(file.number(), path)) {
+        return std::make_unique<PosixLock>(path, std::move(file));
+      }  // else the one who held it has just removed it
     }
+  }
+
+  bool is_locked(const std::filesystem::path& path) override {
+    // Unlike the lock that is asked about, a shared one needs no right to write.
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    return file.is_open() && is_held(file.number());
   }
 
   bool exists(const std::filesystem::path& path) override {
@@ -181,8 +203,8 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
     std::error_code error;
     std::filesystem::path result = std::filesystem::absolute(path, error);
     for (int i = 0; i < kMostLinks && !error; ++i) {
-      result = std::filesystem::weakly_canonical(result, error);
-      if (error || !std::filesystem::is_symlink(std::filesystem::symlink_status(result)))
+      result = without_links(result, error);
+      if (error || !is_link(result))
         break;  // a path that is still a link leads to nothing
       result = result.parent_path() / std::filesystem::read_symlink(result, error);
     }

@@ -165,6 +165,9 @@ class FileSystem {
   /// Makes the file if need be and locks it, without waiting; null if it is locked already, by this
   /// process or another one.
   virtual std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) = 0;
+  /// Whether a process has locked a file by try_lock(): of whatever user, if this one may read the
+  /// file. Makes no file, follows no link, and is in nobody's way; never throws.
+  virtual bool is_locked(const std::filesystem::path& path) = 0;
 
   /// Whether there is anything of that name; a link counts, wherever it leads.
   virtual bool exists(const std::filesystem::path& path) = 0;

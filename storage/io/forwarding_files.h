@@ -37,6 +37,7 @@ class ForwardingFiles : public FileSystem {
   std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) override {
     return others_.try_lock(path);
   }
+  bool is_locked(const std::filesystem::path& path) override { return others_.is_locked(path); }
   bool exists(const std::filesystem::path& path) override { return others_.exists(path); }
   FileKind kind(const std::filesystem::path& path) override { return others_.kind(path); }
   bool is_link(const std::filesystem::path& path) override { return others_.is_link(path); }

@@ -78,13 +78,6 @@ std::vector<fs::path> locked_files(const fs::path& directory, std::string_view e
   return {found.begin(), found.end()};
 }
 
-bool is_locked(const fs::path& file) {
-  // Unlike the lock that is asked about, a shared one needs no right to write.
-  const Descriptor opened(::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-  return opened.is_open() && ::flock(opened.number(), LOCK_SH | LOCK_NB) != 0 &&
-         errno == EWOULDBLOCK;
-}
-
 DeviceTurn::DeviceTurn(const fs::path& directory)
     : root_(::open(file_system_root(directory).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   constexpr int kTries = 300;

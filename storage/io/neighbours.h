@@ -17,10 +17,9 @@ std::filesystem::path file_system_root(const std::filesystem::path& directory);
 class SharedFileSystem {
  public:
   virtual ~SharedFileSystem() = default;
-  /// As the functions below.
+  /// As the function below.
   virtual std::vector<std::filesystem::path> locked_files(const std::filesystem::path& directory,
                                                           std::string_view ending) const = 0;
-  virtual bool is_locked(const std::filesystem::path& file) const = 0;
 };
 
 /// Returns the files on the file system of `directory` that end in `ending` and that processes of
@@ -29,10 +28,6 @@ class SharedFileSystem {
 /// cannot be looked at counts as if it were not there; never throws.
 std::vector<std::filesystem::path> locked_files(const std::filesystem::path& directory,
                                                 std::string_view ending);
-
-/// Whether a process has locked a file by FileSystem::try_lock(): of whatever user, if this one may
-/// read the file. Makes no file and follows no link; never throws.
-bool is_locked(const std::filesystem::path& file);
 
 /// As long as it lives, no other process of this machine has the turn on that file system: for
 /// things that take no time. Waits up to 3 s for it, then goes on without, and so it does where a

@@ -151,6 +151,10 @@ std::unique_ptr<storage::FileLock> FaultyFileSystem::try_lock(const std::filesys
   return real_->try_lock(path);
 }
 
+bool FaultyFileSystem::is_locked(const std::filesystem::path& path) {
+  return real_->is_locked(path);
+}
+
 bool FaultyFileSystem::exists(const std::filesystem::path& path) {
   strike(Call::exists, path);
   return real_->exists(path);

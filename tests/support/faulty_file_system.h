@@ -88,6 +88,7 @@ class FaultyFileSystem final : public storage::FileSystem {
   std::unique_ptr<storage::File> reopen(const std::filesystem::path& path) override;
   storage::FileIdentity identity(const std::filesystem::path& path) override;
   std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path& path) override;
+  bool is_locked(const std::filesystem::path& path) override;  ///< never fails
   bool exists(const std::filesystem::path& path) override;
   std::unique_ptr<storage::File> open_stream(const std::filesystem::path& path,
                                              const std::function<void()>& check) override;

@@ -28,6 +28,7 @@ class MemoryFiles : public storage::FileSystem {
   std::unique_ptr<storage::File> reopen(const std::filesystem::path& path) override;
   storage::FileIdentity identity(const std::filesystem::path& path) override;
   std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path& path) override;
+  bool is_locked(const std::filesystem::path& path) override { return exists(path); }
   bool exists(const std::filesystem::path& path) override;
   std::unique_ptr<storage::File> open_stream(const std::filesystem::path& path,
                                              const std::function<void()>&) override {

@@ -13,14 +13,17 @@
 namespace meshhier::tests {
 
 /// To the byte: nothing is left for scratch data, all of it goes to the disk. Builds until the
-/// first stage that a plan is needed for.
+/// first stage that a plan is needed for. Throws what no budget is the reason of.
 inline std::uint64_t tight_budget(config::Config config, storage::FileSystem& files) {
   const auto is_enough = [&](std::uint64_t budget) {
     config.memory_budget = budget;
     execution::CancelToken cancel;
     StageInterrupter progress(cancel, "ingest");
     std::string message;
-    return try_build(config, true, {files, progress, cancel}, message) != ErrorCode::budget;
+    const auto code = try_build(config, true, {files, progress, cancel}, message);
+    if (code && code != ErrorCode::interrupted && code != ErrorCode::budget)
+      throw Error(*code, message);
+    return code != ErrorCode::budget;
   };
   std::uint64_t refused = 0;
   std::uint64_t accepted = std::uint64_t{1} << 30;

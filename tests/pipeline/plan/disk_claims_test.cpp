@@ -46,12 +46,20 @@ class FilesOfTest : public storage::ForwardingFiles, public storage::SharedFileS
     });
     return found;
   }
-  bool is_locked(const std::filesystem::path& file) const override {
-    return storage::is_locked(file);
-  }
 
  private:
   std::string below_;
+};
+
+/// Locks are seen by nobody else, so what they claim is in no other build's way.
+class HiddenLocks final : public storage::ForwardingFiles {
+ public:
+  using ForwardingFiles::ForwardingFiles;
+  std::unique_ptr<storage::FileLock> try_lock(const std::filesystem::path& path) override {
+    create(path);
+    return std::make_unique<storage::FileLock>();
+  }
+  bool is_locked(const std::filesystem::path& path) override { return exists(path); }
 };
 
 /// Lists a file that goes before it is looked at.
@@ -122,6 +130,7 @@ TEST_F(DiskClaimsTest, WhatIsNoClaimCountsForNothing) {
 }
 
 TEST_F(DiskClaimsTest, WhoFindsTooLittleIsToldWhatIsFreeAndWhatOthersTake) {
+  files_ = std::make_unique<HiddenLocks>(*real_);
   const auto lock = begin("a.hier");
   const auto message = [&](std::uint64_t claimed, const auto& ask) -> std::string {
     claim(storage::work_path(output("a.hier")), claimed);
@@ -159,6 +168,7 @@ TEST_F(DiskClaimsTest, BuildsInOtherFoldersOfTheDiskCount) {
 }
 
 TEST_F(DiskClaimsTest, ClaimsBeyondAllNumbersAreNoSmallOnes) {
+  files_ = std::make_unique<HiddenLocks>(*real_);
   const auto first = begin("a.hier"), second = begin("b.hier");
   for (const char* name : {"a.hier", "b.hier"})
     claim(storage::work_path(output(name)), UINT64_MAX);
@@ -170,6 +180,27 @@ TEST_F(DiskClaimsTest, ABuildWhoseFilesComeAndGoCounts) {
   claim(storage::work_path(output("a.hier")), 5000);
   RestlessFiles restless(*real_, directory_.path());
   EXPECT_EQ(claimed_beside(output("b.hier"), restless), 5000U);
+}
+
+TEST_F(DiskClaimsTest, BuildsMayComeAndGoWhileTheyAreLookedFor) {
+  files_->make_directories(output("two"));
+  const auto come_and_go = [&]() noexcept {
+    for (int i = 0; i < 5000; ++i) {
+      const auto lock = begin("a.hier");
+      if (lock == nullptr)
+        return false;
+      files_->remove_all(storage::work_path(output("a.hier")));
+    }
+    return true;
+  };
+  const pid_t other = fork();
+  if (other == 0)
+    _exit(come_and_go() ? 0 : 1);
+  ASSERT_GT(other, 0);
+  int status = 0;
+  for (int i = 0; waitpid(other, &status, WNOHANG) == 0; ++i)
+    EXPECT_EQ(claimed_beside(output(i % 2 == 0 ? "b.hier" : "two/b.hier"), *files_), 0U);
+  EXPECT_EQ(status, 0) << "who looks was taken for a build";
 }
 
 TEST_F(DiskClaimsTest, BuildsOfOtherUsersInTheFolderCount) {

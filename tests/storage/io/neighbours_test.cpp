@@ -48,15 +48,15 @@ TEST_F(NeighboursTest, FilesAreFoundAsLongAsTheirLocksAreHeld) {
 }
 
 TEST_F(NeighboursTest, WhoAsksForALockMakesNoneAndTakesNone) {
-  EXPECT_FALSE(is_locked(path("none")));
+  EXPECT_FALSE(files_->is_locked(path("none")));
   EXPECT_FALSE(fs::exists(path("none")));
   auto lock = files_->try_lock(path("lock"));
-  EXPECT_TRUE(is_locked(path("lock")));
-  EXPECT_TRUE(is_locked(path("lock"))) << "again";
+  EXPECT_TRUE(files_->is_locked(path("lock")));
+  EXPECT_TRUE(files_->is_locked(path("lock"))) << "again";
   fs::create_symlink(path("lock"), path("link"));
-  EXPECT_FALSE(is_locked(path("link")));
+  EXPECT_FALSE(files_->is_locked(path("link")));
   lock.reset();
-  EXPECT_FALSE(is_locked(path("lock")));
+  EXPECT_FALSE(files_->is_locked(path("lock")));
   EXPECT_NE(files_->try_lock(path("lock")), nullptr);
 }
 
