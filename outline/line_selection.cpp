@@ -17,9 +17,8 @@ struct Taken {
 
 /// Adds lines of `order` to `taken` with a tolerance in input units, as long as all fits. Returns
 /// how many.
-std::size_t take(const Lines& lines, std::span<const std::uint32_t> order,
-                 const OutlineOptions& options, double tolerance, std::size_t max_bytes,
-                 Taken& taken) {
+std::size_t take(Lines& lines, std::span<const std::uint32_t> order, const OutlineOptions& options,
+                 double tolerance, std::size_t max_bytes, Taken& taken) {
   for (std::size_t count = 0; count < order.size(); ++count) {
     const Taken more{taken.vertices + lines.vertex_count(order[count], tolerance), taken.lines + 1};
     if (!more.fits(options, max_bytes))
@@ -31,32 +30,36 @@ std::size_t take(const Lines& lines, std::span<const std::uint32_t> order,
 
 }  // namespace
 
-Lines::Lines(const Network& network, double least, double shortest)
+Lines::Lines(Network& network, double least, double shortest)
     : positions_(network.positions()),
-      chains_(trace_chains(network.count(), network.segments())),
-      form_begin_(chains_.size()) {
-  add_forms(trace_chains(network.count(), network.forms()), shortest);
-  significance_.reserve(chains_.nodes.size());
-  for (std::size_t chain = 0; chain < chains_.size(); ++chain) {
+      chains_(trace_chains(network.count(), network.take_segments())),
+      form_begin_(chains_.size()),
+      least_(least) {
+  add_forms(trace_chains(network.count(), network.take_forms()), shortest);
+  lengths_.reserve(chains_.size());
+  for (std::size_t chain = 0; chain < chains_.size(); ++chain)
+    lengths_.push_back(length_of(points_of(chains_[chain])));
+}
+
+const std::vector<double>& Lines::significance_of(std::size_t chain) {
+  const auto [found, is_new] = significance_.try_emplace(chain);
+  if (is_new) {
     const std::span<const std::uint32_t> nodes = chains_[chain];
-    const std::vector<Vec3f> points = points_of(nodes);
-    const std::vector<double> values = significance(points, nodes.front() == nodes.back(), least);
-    lengths_.push_back(length_of(points));
-    significance_.insert(significance_.end(), values.begin(), values.end());
+    found->second = significance(points_of(nodes), nodes.front() == nodes.back(), least_);
   }
+  return found->second;
 }
 
-std::size_t Lines::vertex_count(std::size_t chain, double tolerance) const {
-  const auto begin = significance_.begin() + chains_.starts[chain];
-  const auto end = significance_.begin() + chains_.starts[chain + 1];
-  return static_cast<std::size_t>(
-      std::count_if(begin, end, [&](double value) { return value > tolerance; }));
+std::size_t Lines::vertex_count(std::size_t chain, double tolerance) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      significance_of(chain), [&](double value) { return value > tolerance; }));
 }
 
-void Lines::append_to(Outline& outline, std::size_t chain, double tolerance) const {
-  for (std::uint32_t i = chains_.starts[chain]; i < chains_.starts[chain + 1]; ++i) {
-    if (significance_[i] > tolerance)
-      outline.vertices.push_back(positions_[chains_.nodes[i]]);
+void Lines::append_to(Outline& outline, std::size_t chain, double tolerance) {
+  const std::vector<double>& values = significance_of(chain);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] > tolerance)
+      outline.vertices.push_back(positions_[chains_[chain][i]]);
   }
   outline.starts.push_back(static_cast<std::uint32_t>(outline.vertices.size()));
 }
@@ -64,8 +67,9 @@ void Lines::append_to(Outline& outline, std::size_t chain, double tolerance) con
 std::vector<std::uint32_t> Lines::by_length() const {
   std::vector<std::uint32_t> order(size());
   std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(),
-                   [this](std::uint32_t a, std::uint32_t b) { return lengths_[a] > lengths_[b]; });
+  std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
+    return lengths_[a] != lengths_[b] ? lengths_[a] > lengths_[b] : a < b;
+  });
   return order;
 }
 
@@ -86,7 +90,7 @@ void Lines::add_forms(const Chains& forms, double shortest) {
   }
 }
 
-Selection select(const Lines& lines, const OutlineOptions& options) {
+Selection select(Lines& lines, const OutlineOptions& options) {
   std::vector<std::uint32_t> order = lines.by_length();
   const auto others_begin = std::stable_partition(
       order.begin(), order.end(), [&](std::uint32_t chain) { return lines.is_form(chain); });

@@ -26,6 +26,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace meshhier::outline {
@@ -57,8 +58,9 @@ class Network {
 
   std::uint32_t count() const { return static_cast<std::uint32_t>(positions_.size()); }
   std::span<const Vec3f> positions() const { return positions_; }
-  std::span<const std::array<std::uint32_t, 2>> segments() const { return segments_; }
-  std::span<const std::array<std::uint32_t, 2>> forms() const { return forms_; }
+  /// These leave none here.
+  Edges take_segments() { return std::exchange(segments_, {}); }
+  Edges take_forms() { return std::exchange(forms_, {}); }
 
  private:
   struct Tile {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -48,6 +49,7 @@ struct OutlineBuilder::Parts {
   std::vector<Sector::Content> sectors;
   std::vector<CrestLine> crests;
   std::size_t edge_count = 0;
+  std::optional<Network> network;
 };
 
 OutlineBuilder::OutlineBuilder() : parts_(std::make_unique<Parts>()) {}
@@ -69,21 +71,22 @@ std::size_t OutlineBuilder::edge_count() const {
   return parts_->edge_count;
 }
 
-std::optional<OutlineResult> OutlineBuilder::finish(const OutlineOptions& options) {
-  assert(options.tolerance > 0 && options.diagonal >= 0);
+std::size_t OutlineBuilder::join() {
   std::vector<SectorContent*> sectors;
   for (SectorContent& sector : parts_->sectors)
     sectors.push_back(&sector);
   std::sort(sectors.begin(), sectors.end(),
             [](const auto* a, const auto* b) { return a->lines.tile < b->lines.tile; });
-  Network network(sectors);
-  if (network.segment_count() > options.max_segments)
-    return std::nullopt;
+  return parts_->network.emplace(sectors).segment_count();
+}
+
+OutlineResult OutlineBuilder::finish(const OutlineOptions& options) {
+  assert(parts_->network && options.tolerance > 0 && options.diagonal >= 0);
+  Network& network = *parts_->network;
   network.make_segments();
   for (const CrestLine& crest : parts_->crests)
     network.add_form(crest.points);
-  const Lines lines(network, options.tolerance * options.diagonal,
-                    kShortestForm * options.diagonal);
+  Lines lines(network, options.tolerance * options.diagonal, kShortestForm * options.diagonal);
   const Selection selection = select(lines, options);
   OutlineResult result;
   result.tolerance = selection.tolerance;

@@ -20,7 +20,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <vector>
 
 namespace meshhier::outline {
@@ -29,8 +28,6 @@ struct OutlineOptions {
   double tolerance = 0.002;       ///< of Douglas-Peucker, as a part of `diagonal`; > 0
   double diagonal = 1;            ///< of the model's bounding box, input units; >= 0
   std::size_t max_bytes = 32768;  ///< the file may be so large
-  /// Some 100 bytes are held for each. An open mesh has up to nine for a border triangle.
-  std::size_t max_segments = SIZE_MAX;
   /// Size of the file for so many vertices (Outline::vertices.size()) and line segments, growing
   /// with both; unset: no limit.
   std::function<std::size_t(std::size_t vertices, std::size_t segments)> file_bytes;
@@ -95,16 +92,20 @@ class OutlineBuilder {
   /// Those of the whole surface, once.
   void add(std::vector<CrestLine> crests);
 
-  /// Counts what is held so far: triangles in several sectors, borders and creases. finish() holds
+  /// Counts what is held so far: triangles in several sectors, borders and creases. join() holds
   /// up to 220 bytes for such a triangle.
   std::size_t edge_count() const;
 
-  /// Nothing if there are more than options.max_segments. Leaves no sector here.
-  /// First come the polylines between junctions, then the closed ones without, both ordered by the
-  /// tile and index of the vertices at their start. Closed ones keep at least a triangle, others
-  /// their ends. O(s log s) in the number of line segments.
-  /// Throws Error(internal) if a border triangle's ghost is in no added sector's boundary.
-  std::optional<OutlineResult> finish(const OutlineOptions& options);
+  /// Joins the sectors, and leaves none here. Returns the number of line segments: finish() holds
+  /// some 45 bytes for each. An open mesh has up to nine for a border triangle.
+  std::size_t join();
+
+  /// Makes the outline of what was joined, once. First come the polylines between junctions, then
+  /// the closed ones without, both ordered by the tile and index of the vertices at their start.
+  /// Closed ones keep at least a triangle, others their ends. O(s log s) in the number of line
+  /// segments. Throws Error(internal) if a border triangle's ghost is in no added sector's
+  /// boundary.
+  OutlineResult finish(const OutlineOptions& options);
 
  private:
   struct Parts;

@@ -11,17 +11,19 @@ namespace {
 
 constexpr double kAlways = std::numeric_limits<double>::infinity();
 
+using Segment = std::array<std::uint32_t, 2>;
+
+std::uint32_t other_end(const Segment& segment, std::uint32_t node) {
+  return segment[segment[0] == node ? 1 : 0];
+}
+
 /// Segments by node: those of node v are [first[v], first[v + 1]), towards ascending nodes.
 struct Adjacency {
-  struct Half {
-    std::uint32_t to;
-    std::uint32_t segment;
-  };
   std::vector<std::uint32_t> first;
-  std::vector<Half> halves;
+  std::vector<std::uint32_t> at;
 
-  Adjacency(std::uint32_t node_count, std::span<const std::array<std::uint32_t, 2>> segments)
-      : first(node_count + 1, 0), halves(2 * segments.size()) {
+  Adjacency(std::uint32_t node_count, std::span<const Segment> segments)
+      : first(node_count + 1, 0), at(2 * segments.size()) {
     for (const auto& [a, b] : segments) {
       ++first[a + 1];
       ++first[b + 1];
@@ -30,50 +32,55 @@ struct Adjacency {
       first[v + 1] += first[v];
     std::vector<std::uint32_t> next(first.begin(), first.end() - 1);
     for (std::uint32_t s = 0; s < segments.size(); ++s) {
-      const auto [a, b] = segments[s];
-      halves[next[a]++] = {b, s};
-      halves[next[b]++] = {a, s};
+      for (const std::uint32_t v : segments[s])
+        at[next[v]++] = s;
     }
     for (std::uint32_t v = 0; v < node_count; ++v) {
-      std::sort(halves.begin() + first[v], halves.begin() + first[v + 1],
-                [](const Half& x, const Half& y) { return x.to < y.to; });
+      std::ranges::sort(at.begin() + first[v], at.begin() + first[v + 1], {},
+                        [&](std::uint32_t s) { return other_end(segments[s], v); });
     }
   }
 
-  std::span<const Half> of(std::uint32_t node) const {
-    return std::span(halves).subspan(first[node], first[node + 1] - first[node]);
+  std::span<const std::uint32_t> of(std::uint32_t node) const {
+    return std::span(at).subspan(first[node], first[node + 1] - first[node]);
   }
 };
 
 class Tracer {
  public:
-  Tracer(std::uint32_t node_count, std::span<const std::array<std::uint32_t, 2>> segments)
-      : adjacency_(node_count, segments), used_(segments.size(), false) {}
+  Tracer(std::uint32_t node_count, std::span<const Segment> segments)
+      : segments_(segments), adjacency_(node_count, segments), used_(segments.size(), false) {
+    // What is not used of it takes no memory; an array that grows is there twice.
+    chains_.nodes.reserve(2 * segments.size());
+    chains_.starts.reserve(segments.size() + 1);
+  }
 
   /// All chains that leave `node`, as far as they are not traced yet.
   void trace_from(std::uint32_t node) {
-    for (const Adjacency::Half& half : adjacency_.of(node)) {
-      if (!used_[half.segment])
-        follow(node, half);
+    for (const std::uint32_t segment : adjacency_.of(node)) {
+      if (!used_[segment])
+        follow(node, segment);
     }
   }
   bool is_junction(std::uint32_t node) const { return adjacency_.of(node).size() != 2; }
   Chains take() { return std::move(chains_); }
 
  private:
-  void follow(std::uint32_t start, Adjacency::Half half) {
+  void follow(std::uint32_t start, std::uint32_t segment) {
     chains_.nodes.push_back(start);
-    while (true) {
-      used_[half.segment] = true;
-      chains_.nodes.push_back(half.to);
-      if (half.to == start || is_junction(half.to))
+    for (std::uint32_t node = start;;) {
+      used_[segment] = true;
+      node = other_end(segments_[segment], node);
+      chains_.nodes.push_back(node);
+      if (node == start || is_junction(node))
         break;
-      const std::span<const Adjacency::Half> two = adjacency_.of(half.to);
-      half = two[0].segment == half.segment ? two[1] : two[0];
+      const std::span<const std::uint32_t> two = adjacency_.of(node);
+      segment = two[two[0] == segment ? 1 : 0];
     }
     chains_.starts.push_back(static_cast<std::uint32_t>(chains_.nodes.size()));
   }
 
+  std::span<const Segment> segments_;
   Adjacency adjacency_;
   std::vector<bool> used_;
   Chains chains_;

@@ -20,13 +20,14 @@ namespace {
 // The file has at most 32 kB for any model (docs/architecture.md, Outline).
 constexpr std::size_t kOutlineBytes = 32000;
 
-// So many border triangles and border edges, then segments, are held at a time: 25 MB, whatever the
+// So many border triangles and border edges, then segments, are held at a time, whatever the
 // budget, as the result may not depend on it. The file has room for 2000 points; a mesh with more
-// edges than this (open patches, soup) is outlined on a coarser level, where they are fewer.
+// edges than this (open patches, soup) is outlined on a coarser level, where they are fewer. Level
+// 0 is outlined anyhow.
 constexpr std::size_t kMostEdges = 131072;
 constexpr std::size_t kMostSegments = 2 * kMostEdges;
-// Level 0 is outlined anyhow.
 constexpr std::uint64_t kEdgeBytes = 100;
+constexpr std::uint64_t kSegmentBytes = 45;
 
 /// A tile has vertices enough for so many sectors; finer tiles cost more and show no more.
 constexpr std::uint32_t kTileSectors = 32;
@@ -85,6 +86,11 @@ bool collect(Forest& forest, Level level, outline::OutlineBuilder& builder, std:
   return !too_many;
 }
 
+std::size_t join(Forest& forest, outline::OutlineBuilder& builder, const StageContext& context) {
+  const TileRoom room = room_for(forest, context.memory(), {builder.edge_count() * kEdgeBytes});
+  return builder.join();
+}
+
 /// Returns the crest lines of the coarsest level, which is one tile: the whole model at the scale
 /// of a thumbnail.
 std::vector<outline::CrestLine> crest_lines(Forest& forest) {
@@ -117,13 +123,14 @@ OutlineStageResult make_outline(Forest& forest, double diagonal, const StageCont
     if (!collect(forest, level, builder, sectors / tiles, context))
       continue;
     builder.add(crests);
-    options.max_segments = level > Level{0} ? kMostSegments : SIZE_MAX;
-    const TileRoom room = room_for(forest, context.memory(), {builder.edge_count() * kEdgeBytes});
-    if (auto result = builder.finish(options)) {
-      return {std::move(result->outline),
-              {raw(level), sectors, result->tolerance, result->polylines_found,
-               result->polylines_dropped}};
-    }
+    const std::size_t segments = join(forest, builder, context);
+    if (segments > kMostSegments && level > Level{0})
+      continue;
+    const TileRoom room = room_for(forest, context.memory(), {segments * kSegmentBytes});
+    outline::OutlineResult result = builder.finish(options);
+    return {
+        std::move(result.outline),
+        {raw(level), sectors, result.tolerance, result.polylines_found, result.polylines_dropped}};
   }
 }
 

@@ -112,12 +112,17 @@ OutlineOptions unlimited(OutlineOptions options) {
   return options;
 }
 
+OutlineResult finished(OutlineBuilder& builder, const OutlineOptions& options) {
+  builder.join();
+  return builder.finish(options);
+}
+
 OutlineResult outline_of(const std::vector<TileMesh>& tiles, const OutlineOptions& options) {
   OutlineBuilder builder;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
     builder.add({static_cast<std::uint32_t>(i), tiles[i]});
   }
-  return builder.finish(options).value();
+  return finished(builder, options);
 }
 
 std::span<const Vec3f> polyline(const Outline& outline, std::size_t i) {
@@ -284,7 +289,7 @@ OutlineResult outline_of(const std::vector<TileMesh>& tiles, const Sectors& sect
   OutlineBuilder builder;
   for (std::size_t i = 0; i < tiles.size(); ++i)
     builder.add({static_cast<std::uint32_t>(i), tiles[i], sectors});
-  return builder.finish(options).value();
+  return finished(builder, options);
 }
 
 double total_length(const Outline& outline) {
@@ -345,7 +350,7 @@ TEST(OutlineBuilder, TheOrderOfSectorsDoesNotMatter) {
         if (index < tiles.size())
           builder.add({static_cast<std::uint32_t>(index), tiles[index]});
       }
-      const OutlineResult other = builder.finish(options).value();
+      const OutlineResult other = finished(builder, options);
       EXPECT_EQ(other.outline.vertices, forward.outline.vertices);
       EXPECT_EQ(other.outline.starts, forward.outline.starts);
     }
@@ -475,7 +480,7 @@ TEST(OutlineBuilder, EdgesOfACubeAreLinesWhateverItsSectors) {
   const auto tiles = cut(mesh, std::vector<std::uint32_t>(8, 0));
   OutlineBuilder builder;
   builder.add({0, tiles[0], {{0, 1, 2, 3, 4, 5, 6, 7}}});
-  const OutlineResult result = *builder.finish(unlimited(options_for(mesh, 0.001)));
+  const OutlineResult result = finished(builder, unlimited(options_for(mesh, 0.001)));
   ASSERT_EQ(result.outline.form_lines, 12u);
   for (std::size_t i = result.outline.polyline_count() - 12; i < result.outline.polyline_count();
        ++i)
@@ -498,7 +503,7 @@ TEST(OutlineBuilder, LinesOfTheFormComeLastInTheFileAndFirstIntoIt) {
     OutlineBuilder builder;
     builder.add({0, tiles[0]});
     builder.add(std::move(crests));
-    return *builder.finish(options);
+    return finished(builder, options);
   };
   const OutlineResult some = with({line_over_the_grid(50, 1), {{{0, 0, 1}, {1, 0, 1}}, 9}});
   ASSERT_EQ(some.outline.form_lines, 1u) << "the other one is short";
@@ -525,7 +530,7 @@ TEST(OutlineBuilder, AGhostOfAMissingSectorIsRefused) {
   const auto tiles = cut(mesh, sectors_by(mesh, [](Vec3f p) { return p.x > 2.5f ? 1u : 0u; }));
   OutlineBuilder builder;
   builder.add({0, tiles[0]});
-  EXPECT_THROW(builder.finish(options_for(mesh, 0.001)), Error);
+  EXPECT_THROW(finished(builder, options_for(mesh, 0.001)), Error);
 }
 
 TEST(OutlineBuilder, ABudgetForNothingDropsAll) {
