@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import errno
 import math
 import numbers
 import operator
@@ -15,15 +14,17 @@ from typing import BinaryIO, Iterator, Sequence, Union
 
 import numpy as np
 
-from .errors import ExistsError, UsageError
+from .errors import ExistsError, FileError, UsageError, file_errors
 
 Path = Union[str, "os.PathLike[str]"]
 Names = Union[str, Sequence[str]]
 
 
 def path_text(value: object) -> str:
-    """A path, or an address, as text. Raises UsageError for what is none."""
-    name = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
+    """A path, or an address, as text. Raises UsageError for what is none; bytes are none."""
+    name = os.fspath(value) if isinstance(value, (str, bytes, os.PathLike)) else None
+    if isinstance(name, bytes):
+        raise UsageError(f"expected a path, found {value!r}: os.fsdecode() makes one of bytes, whatever they are")
     if not isinstance(name, str) or not _can_be_a_word(name):
         is_address = isinstance(name, str) and is_web_address(name)  # perhaps with secrets
         raise UsageError(f"expected a path, found {'an address that is none' if is_address else repr(value)}")
@@ -60,9 +61,9 @@ def beside(place: str) -> str:
 
 
 def require_folder(path: str) -> None:
-    """Raises FileNotFoundError unless there is a folder for what is to be made."""
+    """Raises FileError unless there is a folder for what is to be made."""
     if not os.path.isdir(os.path.dirname(os.path.abspath(path))):
-        raise FileNotFoundError(errno.ENOENT, "there is no folder for it", path)
+        raise FileError(f"{path}: there is no folder for it")
 
 
 def whole(value: object, what: str) -> int:
@@ -84,25 +85,23 @@ def length(value: object, what: str) -> float:
 
 @contextmanager
 def new_file(path: Path, force: bool) -> Iterator[BinaryIO]:
-    """A file to be written, which takes its place when all of it is there. Raises ExistsError if there is one and not `force`."""
+    """A file to be written, which takes its place when all of it is there. Raises ExistsError if there is one and not `force`, FileError."""
     name = output_path(path)
     if os.path.lexists(name) and not force:
         raise exists(name)
     require_folder(name)
     place = os.path.realpath(name)
+    made = beside(place)
     if os.path.exists(place) and not os.path.isfile(place):  # a pipe or a device
-        with open(place, "wb") as stream:
+        with file_errors(name), open(place, "wb") as stream:
             yield stream
         return
-    made = beside(place)
-    try:
+    with file_errors(name, made):
         file = open(made, "xb")
-    except OSError as error:
-        raise type(error)(error.errno, error.strerror, name) from None
-    try:
-        with file:
-            yield file
-        os.replace(made, place)
-    except BaseException:
-        os.unlink(made)
-        raise
+        try:
+            with file:
+                yield file
+            os.replace(made, place)
+        except BaseException:
+            os.unlink(made)
+            raise

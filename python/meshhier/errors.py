@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Optional
+from contextlib import contextmanager
+from typing import Any, Iterator, Optional
 
 
 class Error(Exception):
@@ -67,6 +68,21 @@ class FileError(ProgramError, OSError):
 
     def __init__(self, message: str, exit_code: int = 4) -> None:
         super().__init__(message, exit_code)
+
+
+@contextmanager
+def file_errors(path: str, made: str = "") -> Iterator[None]:
+    """Lets what the system says against a file be a FileError that names it, or `path`: of `made`, which takes that place later, too."""
+    try:
+        yield
+    except Error:
+        raise
+    except OSError as error:
+        is_made = made and str(error.filename).startswith(made)
+        name = path if is_made or error.filename is None else error.filename
+        failure = FileError(f"{name}: {error.strerror or error}")
+        failure.errno = error.errno
+        raise failure from error
 
 
 class BudgetError(ProgramError):

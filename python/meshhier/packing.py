@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from typing import BinaryIO, ContextManager, Iterator
 
 from .asked import Path, beside, exists, new_file, output_path, require_folder
-from .errors import CorruptError, ExistsError, ReplacedError, UsageError
+from .errors import CorruptError, ExistsError, ReplacedError, UsageError, file_errors
 from .hierarchy import Hierarchy, Place
 from .storage import Archive, Folder
 
@@ -115,7 +115,7 @@ def pack(hierarchy: Place, output: Path, *, force: bool = False) -> pathlib.Path
     """Makes one file, NAME.3tz, of a directory, NAME.hier: with the bytes that a build of an archive has. Returns its path.
 
     Raises ExistsError if it is there already; CorruptError if the directory is not whole; ReplacedError if another build takes its
-    place meanwhile.
+    place meanwhile; FileError if the system refuses to read or write a file.
     """
     if not output_path(output).lower().endswith(".3tz"):
         raise UsageError(f"{output_path(output)}: the name of an archive ends in .3tz")
@@ -140,23 +140,28 @@ def unpack(archive: Place, output: Path, *, force: bool = False) -> pathlib.Path
     """Makes a directory, NAME.hier, of an archive, NAME.3tz, also of one at an address: an open one, if that needs headers. It is there
     complete or not at all. Returns its path.
 
-    Raises ExistsError if it is there already (`force` replaces a hierarchy, and nothing else); CorruptError, ReplacedError.
+    Raises ExistsError if it is there already (`force` replaces a hierarchy, and nothing else); CorruptError, ReplacedError, FileError.
     """
     place = os.path.abspath(output_path(output))
     with _opened(archive) as source:
         if not isinstance(source._files, Archive):
             raise UsageError(f"{source.path}: expected an archive NAME.3tz; pack() makes one of a directory")
         _require_free(place, force)
-        made = beside(place)
+        _unpack(source._files, place)
+    return pathlib.Path(output)
+
+
+def _unpack(files: Archive, place: str) -> None:
+    made = beside(place)
+    with file_errors(place, made):
         os.mkdir(made)
         try:
-            for name in source._files.names():
-                _unpack_file(source._files, name, made)
+            for name in files.names():
+                _unpack_file(files, name, made)
             _put(made, place)
         except BaseException:
             shutil.rmtree(made, ignore_errors=True)
             raise
-    return pathlib.Path(output)
 
 
 def _require_free(place: str, force: bool) -> None:

@@ -8,7 +8,7 @@ import struct
 import zipfile
 from typing import Any, Iterable, Protocol
 
-from .errors import CorruptError, NotAHierarchyError, UsageError
+from .errors import CorruptError, NotAHierarchyError, UsageError, file_errors
 
 
 #: What `zipfile` raises of archives that are none.
@@ -57,12 +57,13 @@ class Folder:
 
     def part(self, name: str, begin: int, end: int) -> bytes:
         self.require_open()
-        try:
-            with open(os.path.join(self._place, *name.split("/")), "rb") as file:
-                file.seek(begin)
-                return file.read(end - begin if end >= 0 else -1)
-        except FileNotFoundError as error:
-            raise CorruptError(f"{self._path}: {name} is missing") from error
+        with file_errors(self._path):
+            try:
+                with open(os.path.join(self._place, *name.split("/")), "rb") as file:
+                    file.seek(begin)
+                    return file.read(end - begin if end >= 0 else -1)
+            except FileNotFoundError as error:
+                raise CorruptError(f"{self._path}: {name} is missing") from error
 
     def expect(self, files: Iterable[tuple[str, int]]) -> None:
         """Files are near."""
@@ -90,7 +91,8 @@ class Archive:
 
     def _open(self) -> None:
         try:
-            self._zip = self._read_directory()
+            with file_errors(self._path):
+                self._zip = self._read_directory()
             if not all(facts.filename and 0 <= facts.header_offset < _MOST_BYTES for facts in self._zip.infolist()):
                 raise zipfile.BadZipFile("a file in it has no name, or a place that no file has")
         except _BROKEN as error:

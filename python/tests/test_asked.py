@@ -205,7 +205,7 @@ def test_nothing_is_replaced_in_silence(plain: meshhier.Hierarchy, tmp_path: Pat
     with pytest.raises(meshhier.UsageError, match="long"):
         mesh.write_ply(path, force=True)
     assert {entry.name for entry in tmp_path.iterdir()} == {"a.ply", "link.ply"}, "nothing is left beside"
-    with pytest.raises(FileNotFoundError, match="nowhere/a.ply"):
+    with pytest.raises(meshhier.FileError, match="nowhere/a.ply: there is no folder"):
         plain.cut(level=0).write_ply(tmp_path / "nowhere" / "a.ply")
     plain.cut(level=0).write_ply(os.devnull, force=True)
     assert not os.path.isfile(os.devnull)

@@ -88,15 +88,32 @@ def test_what_makes_no_sense(torus: str, built: Any, tmp_path: Path) -> None:
             wrong()
     with pytest.raises(meshhier.NotAHierarchyError):
         meshhier.pack(tmp_path / "none.hier", tmp_path / "a.3tz")
-    with pytest.raises(FileNotFoundError, match=r"none/a.3tz'$"):
+    with pytest.raises(meshhier.FileError, match="none/a.3tz: there is no folder"):
         meshhier.pack(folder, tmp_path / "none" / "a.3tz")
-    with pytest.raises(FileNotFoundError, match=r"none/a.hier'$"):
+    with pytest.raises(meshhier.FileError, match="none/a.hier: there is no folder"):
         meshhier.unpack(archive, tmp_path / "none" / "a.hier")
     shutil.copytree(folder, tmp_path / "b.hier")
     (tmp_path / "b.hier" / "outline.glb").unlink()
     with pytest.raises(meshhier.CorruptError, match="outline.glb is missing"):
         meshhier.pack(tmp_path / "b.hier", tmp_path / "b.3tz")
     assert os.listdir(tmp_path) == ["b.hier"]
+
+
+def test_what_the_system_refuses_is_an_error_of_the_package(torus: str, built: Any, tmp_path: Path) -> None:
+    folder, archive = built(torus, "packing0.hier"), built(torus, "packing0.3tz")
+    closed = Path("/sys")  # also to root
+    mesh = meshhier.open(folder).cut(level=0)
+    calls: dict[str, Callable[[Path], object]] = {
+        "a.3tz": lambda path: meshhier.pack(folder, path),
+        "a.hier": lambda path: meshhier.unpack(archive, path),
+        "a.ply": mesh.write_ply,
+    }
+    for name, call in calls.items():
+        with pytest.raises(meshhier.FileError) as failed:
+            call(closed / name)
+        number = failed.value.errno
+        assert number is not None and str(failed.value) == f"/sys/{name}: {os.strerror(number)}"
+        assert isinstance(failed.value, OSError) and failed.value.exit_code == 4
 
 
 @pytest.mark.parametrize("name", ["../out", "/etc/x", "tiles//a", "a\\b", "C:/x y"])
