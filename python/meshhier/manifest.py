@@ -11,11 +11,14 @@ from typing import Any, Optional
 import numpy as np
 from numpy.typing import NDArray
 
+from .checksum import checksum
 from .errors import MISREAD, CorruptError, NotAHierarchyError, misread
 from .mesh import Conventions
 from .tree import Node, Tree
 
 _VERSIONS = range(7, 15)
+_BEFORE_SEAL, _AFTER_SEAL = b',\n  "checksum": "', b'"\n}\n'
+_DIGITS = 16
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,15 @@ def _conventions(text: dict[str, Any]) -> Conventions:
     return Conventions(text["up"], attributes.get("linear_colours", False), attributes.get("tints", False), texture.get("unlit", False))
 
 
+def _require_seal(data: bytes, path: str) -> None:
+    """Raises CorruptError unless the text ends with its own checksum, which is made with zeros in its place."""
+    text, digits = data[: -_DIGITS - len(_AFTER_SEAL)], data[-_DIGITS - len(_AFTER_SEAL) : -len(_AFTER_SEAL)]
+    if not text.endswith(_BEFORE_SEAL) or not data.endswith(_AFTER_SEAL):
+        raise CorruptError(f"{path}: hierarchy.json does not end with its checksum: the file was changed")
+    if digits != b"%016x" % checksum(text + b"0" * _DIGITS + _AFTER_SEAL):
+        raise CorruptError(f"{path}: hierarchy.json has another checksum than it says: the file was changed")
+
+
 def read_manifest(data: bytes, path: str) -> Manifest:
     """Of `hierarchy.json`. Raises NotAHierarchyError, CorruptError."""
     try:
@@ -120,6 +132,7 @@ def read_manifest(data: bytes, path: str) -> Manifest:
         raise NotAHierarchyError(
             f"{path}: format version {str(text.get('format_version'))[:20]}; this package reads {_VERSIONS[0]} to {_VERSIONS[-1]}"
         )
+    _require_seal(data, path)
     try:
         source = text["source"]
         lattice = text["storage"]["positions"]

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 
 import meshhier
+from meshhier.checksum import checksum
 from meshhier.manifest import read_manifest
 from meshhier.tile import read_tile
 
@@ -120,8 +121,18 @@ def _forged(text: Any) -> Iterator[bytes]:
                 del place[last]
             else:
                 place[last] = wrong
-            yield json.dumps(forged).encode()
+            yield _sealed(forged)
     yield b"[" * 100_000
+
+
+def _sealed(text: Any) -> bytes:
+    """JSON as a manifest is written, with the checksum that it has; of what has none, as it is."""
+    data = json.dumps(text, indent=2).encode() + b"\n"
+    end = b'"\n}\n'
+    if not isinstance(text.get("checksum"), str) or len(text["checksum"]) != 16 or not data.endswith(end):
+        return data
+    head = data[: -len(end) - 16]
+    return head + b"%016x" % checksum(head + b"0" * 16 + end) + end
 
 
 def _refused(read: Callable[[], object]) -> int:
@@ -164,6 +175,23 @@ def test_a_manifest_that_lies_is_refused(tiny: str, built: Any, tmp_path: Path) 
         (place / "hierarchy.json").write_bytes(forged)
         refused += _refused(tell)
     assert refused > 100
+
+
+def test_a_manifest_that_was_changed_is_told(tiny: str, built: Any, tmp_path: Path) -> None:
+    place = tmp_path / "a.hier"
+    shutil.copytree(built(tiny, "tiny.hier"), place)
+    text = (place / "hierarchy.json").read_bytes()
+    assert _sealed(json.loads(text)) == text
+    vertices = b'"vertices": %d' % meshhier.open(place).vertices
+    for changed, said in (
+        (text.replace(vertices, vertices[:-1] + b"%d" % (9 - int(vertices[-1:]))), "another checksum"),
+        (text.replace(b'"\n}\n', b'"\n}\n\n'), "does not end with its checksum"),
+        (json.dumps(json.loads(text)).encode(), "does not end with its checksum"),
+    ):
+        assert changed != text
+        (place / "hierarchy.json").write_bytes(changed)
+        with pytest.raises(meshhier.CorruptError, match=said):
+            meshhier.open(place)
 
 
 def test_what_others_call_it(torus: str, built: Any) -> None:
