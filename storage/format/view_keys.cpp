@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <numbers>
 #include <string>
 #include <system_error>
 #include <type_traits>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -143,94 +145,107 @@ Json texts_schema() {
 
 // ---- rows
 
-ViewKey flag(std::string_view name, bool ModelView::*field, std::string_view meaning,
-             ViewPart part = ViewPart::look) {
+/// What people read of a key, as in ViewKey.
+struct Words {
+  std::string_view meaning, expected, unset = "none";
+};
+
+using IsSound = bool (*)(const Json& value);
+
+ViewKey view_key(std::string_view name, ViewPart part, ViewField field, const Words& words,
+                 Json schema, IsSound is_sound = nullptr) {
   return {.name = name,
           .part = part,
           .field = field,
-          .meaning = meaning,
-          .expected = "true or false",
-          .unset = ModelView{}.*field ? "true" : "false",
-          .schema = flag_schema()};
+          .meaning = words.meaning,
+          .expected = words.expected,
+          .unset = words.unset,
+          .schema = std::move(schema),
+          .is_sound = is_sound};
+}
+
+ViewKey flag(std::string_view name, bool ModelView::*field, std::string_view meaning,
+             ViewPart part = ViewPart::look) {
+  return view_key(name, part, field,
+                  {meaning, "true or false", ModelView{}.*field ? "true" : "false"}, flag_schema());
 }
 
 ViewKey word(std::string_view name, std::string ModelView::*field, std::vector<std::string> words,
              std::string_view unset, std::string_view meaning, ViewPart part = ViewPart::look) {
-  return {.name = name,
-          .part = part,
-          .field = field,
-          .meaning = meaning,
-          .expected = {},
-          .unset = unset,
-          .schema = {{"enum", words}},
-          .words = std::move(words)};
+  ViewKey made = view_key(name, part, field, {meaning, {}, unset}, {{"enum", words}});
+  made.words = std::move(words);
+  return made;
 }
 
-ViewKey texts(std::string_view name, std::vector<std::string> ModelView::*field,
-              std::string_view meaning) {
-  return {.name = name,
-          .part = ViewPart::objects,
-          .field = field,
-          .meaning = meaning,
-          .expected = "a list of at most 100 texts",
-          .unset = "none",
-          .schema = texts_schema(),
-          .is_sound = are_texts};
+ViewKey object_text(std::string_view name, std::string ModelView::*field,
+                    std::string_view meaning) {
+  return view_key(name, ViewPart::objects, field, {meaning, "a text of 1 to 2000 bytes"},
+                  text_schema(kMostObjectBytes), is_text);
 }
 
-std::vector<ViewKey> make_keys() {
+ViewKey object_texts(std::string_view name, std::vector<std::string> ModelView::*field,
+                     std::string_view meaning) {
+  return view_key(name, ViewPart::objects, field, {meaning, "a list of at most 100 texts"},
+                  texts_schema(), are_texts);
+}
+
+/// Two numbers.
+ViewKey span_of_values(std::string_view name, ViewPart part, std::vector<double> ModelView::*field,
+                       std::string_view meaning) {
+  return view_key(name, part, field, {meaning, "two numbers", "all values"}, numbers_schema(2, 2),
+                  has_numbers<2>);
+}
+
+ViewKey light_key() {
+  ViewKey made = view_key(
+      "light", ViewPart::look, &ModelView::light,
+      {"`auto`, `studio`, `raking`, `relief`, `flat`, `sun` or `matcap`; perhaps with two angles "
+       "of the key light, to the right and up, in radians: `raking,0.8,0.2`",
+       "auto, studio, raking, relief, flat, sun or matcap, perhaps with two angles behind it, "
+       "-3.14 to 3.14 each: \"raking,0.8,0.2\"",
+       "auto: the sun over terrains, a studio around all else"},
+      {{"type", "string"},
+       {"pattern", "^(auto|studio|raking|relief|flat|sun|matcap)(,[-+.eE0-9]+){0,2}$"}},
+      is_light);
+  made.words = kLights;
+  return made;
+}
+
+std::vector<ViewKey> sight_keys() {
   return {
-      {.name = "camera",
-       .part = ViewPart::camera,
-       .field = &ModelView::camera,
-       .meaning = "where the camera is and what it looks at, as in links of the page: input "
-                  "coordinates less the hierarchy's origin, turned until y is up; "
-                  "`meshhier view --link` takes it from a link",
-       .expected = "a place and another one that the camera looks at, three numbers each",
-       .unset = "all of the model",
-       .schema = numbers_schema(6, 6),
-       .is_sound = is_apart},
+      view_key(
+          "camera", ViewPart::camera, &ModelView::camera,
+          {"where the camera is and what it looks at, as in links of the page: input coordinates "
+           "less the hierarchy's origin, turned until y is up; `meshhier view --link` takes it "
+           "from a link",
+           "a place and another one that the camera looks at, three numbers each",
+           "all of the model"},
+          numbers_schema(6, 6), is_apart),
       word("projection", &ModelView::projection, {"perspective", "parallel"}, "perspective",
            "`parallel`: all depths have one scale, as in drawings", ViewPart::projection),
+  };
+}
+
+std::vector<ViewKey> look_keys() {
+  return {
       word("colours", &ModelView::colours,
            {"plain", "vertex", "partition", "error", "height", "attribute"},
            "vertex; attribute if view.attribute is given",
            "what colours show: `vertex` is the input's own"),
       word("shading", &ModelView::shading, {"smooth", "flat"}, "smooth", "whether triangles show"),
-      {.name = "attribute",
-       .part = ViewPart::look,
-       .field = &ModelView::attribute,
-       .meaning = "the attribute of the vertices that colours show",
-       .expected = "a name of 1 to 100 bytes",
-       .unset = "the first one",
-       .schema = text_schema(kMostNameBytes),
-       .is_sound = is_attribute},
+      view_key("attribute", ViewPart::look, &ModelView::attribute,
+               {"the attribute of the vertices that colours show", "a name of 1 to 100 bytes",
+                "the first one"},
+               text_schema(kMostNameBytes), is_attribute),
       word("ramp", &ModelView::ramp, {"viridis", "cividis", "turbo", "coolwarm"}, "viridis",
            "its colours"),
-      {.name = "range",
-       .part = ViewPart::look,
-       .field = &ModelView::range,
-       .meaning = "values at the ends of the ramp",
-       .expected = "two numbers",
-       .unset = "all values",
-       .schema = numbers_schema(2, 2),
-       .is_sound = has_numbers<2>},
-      {.name = "tolerance",
-       .part = ViewPart::look,
-       .field = &ModelView::tolerance,
-       .meaning = "values no farther from 0 are drawn as one neutral band",
-       .expected = "a number above 0",
-       .unset = "none",
-       .schema = {{"type", "number"}, {"exclusiveMinimum", 0}},
-       .is_sound = is_positive},
-      {.name = "hidden",
-       .part = ViewPart::look,
-       .field = &ModelView::hidden,
-       .meaning = "labels that are not drawn",
-       .expected = "a list of at most 256 numbers",
-       .unset = "none",
-       .schema = numbers_schema(0, kMostHidden),
-       .is_sound = are_few},
+      span_of_values("range", ViewPart::look, &ModelView::range, "values at the ends of the ramp"),
+      view_key("tolerance", ViewPart::look, &ModelView::tolerance,
+               {"values no farther from 0 are drawn as one neutral band", "a number above 0"},
+               {{"type", "number"}, {"exclusiveMinimum", 0}}, is_positive),
+      view_key("hidden", ViewPart::look, &ModelView::hidden,
+               {"labels that are not drawn", "a list of at most 256 numbers"},
+               numbers_schema(0, kMostHidden), are_few),
       flag("texture", &ModelView::texture, "pictures are shown"),
       flag("relight", &ModelView::relight, "pictures that have their light already are lit"),
       flag("cavities", &ModelView::cavities, "hollows are darker, edges lighter"),
@@ -238,112 +253,74 @@ std::vector<ViewKey> make_keys() {
       flag("points", &ModelView::points, "vertices are drawn"),
       flag("outline", &ModelView::outline, "the shape-outline is drawn"),
       flag("isolines", &ModelView::isolines, "lines of equal value are drawn"),
-      {.name = "light",
-       .part = ViewPart::look,
-       .field = &ModelView::light,
-       .meaning = "`auto`, `studio`, `raking`, `relief`, `flat`, `sun` or `matcap`; perhaps with "
-                  "two angles of the key light, to the right and up, in radians: "
-                  "`raking,0.8,0.2`",
-       .expected = "auto, studio, raking, relief, flat, sun or matcap, perhaps with two angles "
-                   "behind it, -3.14 to 3.14 each: \"raking,0.8,0.2\"",
-       .unset = "auto: the sun over terrains, a studio around all else",
-       .schema = {{"type", "string"},
-                  {"pattern", "^(auto|studio|raking|relief|flat|sun|matcap)(,[-+.eE0-9]+){0,2}$"}},
-       .words = kLights,
-       .is_sound = is_light},
+      light_key(),
       flag("occlusion", &ModelView::occlusion, "hollows of what is seen get less light"),
+  };
+}
+
+/// How the model stands, and what of it is shown.
+std::vector<ViewKey> space_keys() {
+  return {
       word("up", &ModelView::up, {"file", "x", "y", "z", "-x", "-y", "-z"},
            "file: as the key up says", "the axis of the input that is shown upright",
            ViewPart::standing),
-      {.name = "stretch",
-       .part = ViewPart::standing,
-       .field = &ModelView::stretch,
-       .meaning = "heights are shown so many times as high",
-       .expected = "a number from 1 to 100",
-       .unset = "1",
-       .schema = {{"type", "number"}, {"minimum", 1}, {"maximum", kMostStretch}},
-       .is_sound = is_stretch},
+      view_key("stretch", ViewPart::standing, &ModelView::stretch,
+               {"heights are shown so many times as high", "a number from 1 to 100", "1"},
+               {{"type", "number"}, {"minimum", 1}, {"maximum", kMostStretch}}, is_stretch),
       word("dollhouse", &ModelView::dollhouse, {"auto", "on", "off"},
            "auto: where most of the hull looks away",
            "whether faces that look away are left out, to look into rooms", ViewPart::dollhouse),
-      {.name = "level",
-       .part = ViewPart::level,
-       .field = &ModelView::level,
-       .meaning = "the finest level that is shown; the root is 0",
-       .expected = "an integer from 0 to 32",
-       .unset = "the last one",
-       .schema = {{"type", "integer"}, {"minimum", 0}, {"maximum", kDeepestLevel}},
-       .is_sound = is_level},
-      {.name = "cut",
-       .part = ViewPart::cut,
-       .field = &ModelView::cut,
-       .meaning = "`[a, b, c, d]`, in input coordinates: shown is where ax + by + cz + d is at "
-                  "least 0",
-       .expected = "four numbers, the first three not all 0",
-       .unset = "none",
-       .schema = numbers_schema(4, 4),
-       .is_sound = is_plane},
-      {.name = "box",
-       .part = ViewPart::cut,
-       .field = &ModelView::box,
-       .meaning = "two corners, in input coordinates: what lies between them is shown",
-       .expected = "two corners, each number of the first below that of the second",
-       .unset = "none",
-       .schema = numbers_schema(6, 6),
-       .is_sound = is_box},
+      view_key("level", ViewPart::level, &ModelView::level,
+               {"the finest level that is shown; the root is 0", "an integer from 0 to 32",
+                "the last one"},
+               {{"type", "integer"}, {"minimum", 0}, {"maximum", kDeepestLevel}}, is_level),
+      view_key(
+          "cut", ViewPart::cut, &ModelView::cut,
+          {"`[a, b, c, d]`, in input coordinates: shown is where ax + by + cz + d is at least 0",
+           "four numbers, the first three not all 0"},
+          numbers_schema(4, 4), is_plane),
+      view_key("box", ViewPart::cut, &ModelView::box,
+               {"two corners, in input coordinates: what lies between them is shown",
+                "two corners, each number of the first below that of the second"},
+               numbers_schema(6, 6), is_box),
       flag("caps", &ModelView::caps, "cuts of closed models are closed", ViewPart::cut),
-      {.name = "storey",
-       .part = ViewPart::rooms,
-       .field = &ModelView::storey,
-       .meaning = "heights of the input: what lies between them is shown",
-       .expected = "two numbers, the lower one first",
-       .unset = "all",
-       .schema = numbers_schema(2, 2),
-       .is_sound = is_storey},
-      {.name = "measure",
-       .part = ViewPart::measure,
-       .field = &ModelView::measure,
-       .meaning = "points that are measured, three numbers each, in input coordinates",
-       .expected = "1 to 64 points, three numbers each",
-       .unset = "none",
-       .schema = numbers_schema(3, 3 * kMostPoints),
-       .is_sound = are_points},
-      {.name = "pick",
-       .part = ViewPart::pick,
-       .field = &ModelView::pick,
-       .meaning = "the point that is picked, in input coordinates",
-       .expected = "three numbers",
-       .unset = "none",
-       .schema = numbers_schema(3, 3),
-       .is_sound = is_point},
-      {.name = "object",
-       .part = ViewPart::objects,
-       .field = &ModelView::object,
-       .meaning = "the object that is picked, by its name",
-       .expected = "a text of 1 to 2000 bytes",
-       .unset = "none",
-       .schema = text_schema(kMostObjectBytes),
-       .is_sound = is_text},
-      {.name = "by",
-       .part = ViewPart::objects,
-       .field = &ModelView::by,
-       .meaning = "the property that objects are coloured by",
-       .expected = "a text of 1 to 2000 bytes",
-       .unset = "none",
-       .schema = text_schema(kMostObjectBytes),
-       .is_sound = is_text},
-      {.name = "between",
-       .part = ViewPart::objects,
-       .field = &ModelView::between,
-       .meaning = "its values at the ends of the ramp",
-       .expected = "two numbers",
-       .unset = "all values",
-       .schema = numbers_schema(2, 2),
-       .is_sound = has_numbers<2>},
-      texts("only", &ModelView::only, "objects that are shown, and no others"),
-      texts("hide", &ModelView::hide, "objects that are not shown"),
-      texts("show", &ModelView::show, "objects that are shown although others of theirs are not"),
+      view_key("storey", ViewPart::rooms, &ModelView::storey,
+               {"heights of the input: what lies between them is shown",
+                "two numbers, the lower one first", "all"},
+               numbers_schema(2, 2), is_storey),
   };
+}
+
+std::vector<ViewKey> point_keys() {
+  return {
+      view_key("measure", ViewPart::measure, &ModelView::measure,
+               {"points that are measured, three numbers each, in input coordinates",
+                "1 to 64 points, three numbers each"},
+               numbers_schema(3, 3 * kMostPoints), are_points),
+      view_key("pick", ViewPart::pick, &ModelView::pick,
+               {"the point that is picked, in input coordinates", "three numbers"},
+               numbers_schema(3, 3), is_point),
+  };
+}
+
+std::vector<ViewKey> object_view_keys() {
+  return {
+      object_text("object", &ModelView::object, "the object that is picked, by its name"),
+      object_text("by", &ModelView::by, "the property that objects are coloured by"),
+      span_of_values("between", ViewPart::objects, &ModelView::between,
+                     "its values at the ends of the ramp"),
+      object_texts("only", &ModelView::only, "objects that are shown, and no others"),
+      object_texts("hide", &ModelView::hide, "objects that are not shown"),
+      object_texts("show", &ModelView::show,
+                   "objects that are shown although others of theirs are not"),
+  };
+}
+
+std::vector<ViewKey> make_keys() {
+  std::vector<ViewKey> all;
+  for (const auto make : {sight_keys, look_keys, space_keys, point_keys, object_view_keys})
+    std::ranges::move(make(), std::back_inserter(all));
+  return all;
 }
 
 /// Whether a JSON is of the member's type.
