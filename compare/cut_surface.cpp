@@ -55,6 +55,20 @@ std::vector<std::uint32_t> objects_of(const TileMesh& mesh, const exporting::Dra
   return objects;
 }
 
+/// Tells of each own place whether a triangle has it.
+std::vector<bool> used_places(const TileMesh& mesh) {
+  std::vector<bool> is_used(mesh.own_count);
+  for (const auto* triangles : {&mesh.interior, &mesh.border}) {
+    for (const TileTriangle& triangle : *triangles) {
+      for (const TileVertex corner : triangle) {
+        if (raw(corner) < mesh.own_count)
+          is_used[raw(corner)] = true;
+      }
+    }
+  }
+  return is_used;
+}
+
 void add(TileSurfaceFacts& total, const TileSurfaceFacts& facts) {
   total.triangles += facts.triangles;
   total.flat += facts.flat;
@@ -66,6 +80,13 @@ void add(TileSurfaceFacts& total, const TileSurfaceFacts& facts) {
 
 std::size_t tiles_in_flight() {
   return static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+}
+
+std::uint32_t PlacedTile::place_of(std::uint32_t number) const {
+  if (number >= base && number - base < own_count)
+    return number - base;
+  const auto found = std::ranges::lower_bound(foreign, number, {}, &Foreign::number);
+  return own_count + static_cast<std::uint32_t>(found - foreign.begin());
 }
 
 CutSurface::CutSurface(const storage::HierarchyReader& reader, Cut cut, std::uint64_t cache_bytes)
@@ -115,6 +136,26 @@ Vec3f CutSurface::shown_position(const exporting::ShownGhost& ghost) const {
   return (*positions)[ghost.number - numbered_.base(ghost.position)];
 }
 
+/// Returns the places of other tiles that the triangles of a tile have, ascending by number.
+std::vector<CutSurface::ForeignPlace> CutSurface::foreign_places(const PublishedTile& tile) const {
+  std::vector<ForeignPlace> places;
+  for (std::size_t i = 0; i < tile.mesh.ghosts.size(); ++i) {
+    const auto ghost = find_ghost(reader_.tree(), numbered_, tile, i);
+    if (!ghost)
+      continue;
+    const Vec3f position = ghost->level == tile.node.level
+                               ? tile.mesh.vertices.positions[tile.mesh.own_count + i]
+                               : shown_position(*ghost);
+    places.push_back({{ghost->number, static_cast<std::uint32_t>(ghost->position)}, position});
+  }
+  const auto number_of = [](const ForeignPlace& place) { return place.foreign.number; };
+  std::ranges::sort(places, {}, number_of);
+  // Several ghosts may be shown at one place.
+  const auto repeated = std::ranges::unique(places, {}, number_of);
+  places.erase(repeated.begin(), repeated.end());
+  return places;
+}
+
 PlacedTile CutSurface::load_placed(std::size_t position) const {
   const PublishedTile tile = reader_.read_tile(numbered_.cut[position]);
   const TileMesh& mesh = tile.mesh;
@@ -122,59 +163,21 @@ PlacedTile CutSurface::load_placed(std::size_t position) const {
   PlacedTile placed;
   if (const auto object = placed_object(reader_.tile_format().attributes))
     placed.facts.objects = objects_of(mesh, drawn, *object);
-  placed.base = numbered_.base(position);
-  placed.own_count = mesh.own_count;
   placed.facts.interior_count = mesh.interior.size();
   placed.facts.border = std::move(drawn.border);
-
-  placed.is_used.resize(mesh.own_count);
-  for (const auto* triangles : {&mesh.interior, &mesh.border}) {
-    for (const TileTriangle& triangle : *triangles) {
-      for (const TileVertex corner : triangle) {
-        if (raw(corner) < mesh.own_count)
-          placed.is_used[raw(corner)] = true;
-      }
-    }
-  }
-
-  struct Ghost {
-    PlacedTile::Foreign foreign;
-    Vec3f place;
-  };
-  std::vector<Ghost> ghosts;
-  for (std::size_t i = 0; i < mesh.ghosts.size(); ++i) {
-    const auto ghost = find_ghost(reader_.tree(), numbered_, tile, i);
-    if (!ghost)
-      continue;
-    const Vec3f place = ghost->level == tile.node.level
-                            ? mesh.vertices.positions[mesh.own_count + i]
-                            : shown_position(*ghost);
-    ghosts.push_back({{ghost->number, static_cast<std::uint32_t>(ghost->position)}, place});
-  }
-  const auto number_of = [](const Ghost& ghost) { return ghost.foreign.number; };
-  std::ranges::sort(ghosts, {}, number_of);
-  // Several ghosts may be shown at one place.
-  const auto is_repeat = [&](const Ghost& a, const Ghost& b) {
-    return number_of(a) == number_of(b);
-  };
-  ghosts.erase(std::unique(ghosts.begin(), ghosts.end(), is_repeat), ghosts.end());
-
+  placed.base = numbered_.base(position);
+  placed.own_count = mesh.own_count;
+  placed.is_used = used_places(mesh);
   placed.places.assign(mesh.vertices.positions.begin(),
                        mesh.vertices.positions.begin() + mesh.own_count);
-  for (const Ghost& ghost : ghosts) {
-    placed.places.push_back(ghost.place);
-    placed.foreign.push_back(ghost.foreign);
+  for (const ForeignPlace& place : foreign_places(tile)) {
+    placed.places.push_back(place.position);
+    placed.foreign.push_back(place.foreign);
   }
-  const auto place_of = [&](std::uint32_t number) {
-    if (number >= placed.base && number - placed.base < placed.own_count)
-      return number - placed.base;
-    const auto found = std::ranges::lower_bound(ghosts, number, {}, number_of);
-    return placed.own_count + static_cast<std::uint32_t>(found - ghosts.begin());
-  };
   placed.triangles = std::move(drawn.triangles);
   for (exporting::CutTriangle& triangle : placed.triangles) {
     for (std::uint32_t& corner : triangle)
-      corner = place_of(corner);
+      corner = placed.place_of(corner);
   }
   return placed;
 }

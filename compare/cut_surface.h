@@ -65,6 +65,8 @@ struct PlacedTile {
   std::uint32_t number(std::uint32_t place) const {
     return place < own_count ? base + place : foreign[place - own_count].number;
   }
+  /// Returns the place that has a number in the cut; there must be one.
+  std::uint32_t place_of(std::uint32_t number) const;
 };
 
 /// The facts that are kept of every tile.
@@ -103,8 +105,14 @@ class CutSurface {
 
  private:
   using Positions = std::vector<Vec3f>;
+  /// A place of another tile, and where it is.
+  struct ForeignPlace {
+    PlacedTile::Foreign foreign;
+    Vec3f position;
+  };
 
   Vec3f shown_position(const exporting::ShownGhost& ghost) const;
+  std::vector<ForeignPlace> foreign_places(const PublishedTile& tile) const;
   TileSurface piece_of(TileSurface tile) const;
 
   const storage::HierarchyReader& reader_;
