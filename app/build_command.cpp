@@ -62,11 +62,7 @@ void add_places(CLI::App& command, BuildArguments& arguments) {
   command
       .add_option("FILE", arguments.named, "A mesh, several meshes that are joined, or a config")
       ->check(name_fault);
-  command
-      .add_option("-o,--output", arguments.output,
-                  "The hierarchy to make: a directory, or one file if it ends in .3tz")
-      ->type_name("PATH")
-      ->check(name_fault);
+  add_made_hierarchy_option(command, arguments.output);
 }
 
 /// Adds --set, and options of their own for keys that are set often.
@@ -116,11 +112,11 @@ void add_input_rules(CLI::App& command, BuildArguments& arguments) {
   CLI::Option* no_links =
       command.add_flag("--no-links", arguments.no_links,
                        "Refuse input files and configs with a link in their paths");
-  command
-      .add_option("--within", arguments.within,
-                  "Read no input file that lies outside this folder, or behind a link in it")
-      ->type_name("FOLDER")
-      ->check(name_fault)
+  add_name_option(
+      command,
+      {"--within", "Read no input file that lies outside this folder, or behind a link in it",
+       "FOLDER"},
+      arguments.within)
       ->excludes(no_links);
 }
 
@@ -143,7 +139,7 @@ void add_accounts(CLI::App& command, BuildArguments& arguments) {
   command.add_flag("--json", arguments.json, "With --dry-run: one JSON object, for programs")
       ->needs(dry_run);
   const auto add = [&](const char* name, std::string& file, const char* help) {
-    command.add_option(name, file, help)->type_name("FILE")->check(name_fault)->excludes(dry_run);
+    add_name_option(command, {name, help}, file)->excludes(dry_run);
   };
   add("--stats", arguments.stats, "Write what each stage took of time, memory and disk, as JSON");
   add("--input-note", arguments.input_note,

@@ -52,11 +52,7 @@ void add_clean_command(CLI::App& parser, Invocation& invocation) {
   command->add_flag("--remove", arguments->remove, "Remove it");
   command->add_flag("--json", arguments->json, "One JSON object, for programs");
   command->footer(kCleanFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments](Environment& environment) {
-      return run_clean(*arguments, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_clean);
 }
 
 }  // namespace meshhier::app

@@ -8,8 +8,10 @@
 
 #include <functional>
 #include <iosfwd>
+#include <memory>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 #include <CLI/CLI.hpp>
 
@@ -31,6 +33,21 @@ struct Invocation {
   execution::ProgressMode progress = execution::ProgressMode::automatic;
   std::string program = "meshhier";
 };
+
+/// Lets `run` be what is run if arguments choose `command`: with its `arguments`, and the way to
+/// tell progress if it takes that. `invocation` must outlive the parsing.
+template <class Arguments, class Run>
+void run_if_chosen(CLI::App& command, Invocation& invocation,
+                   const std::shared_ptr<Arguments>& arguments, Run run) {
+  command.callback([=, &invocation] {
+    invocation.run = [=, &invocation](Environment& environment) {
+      if constexpr (std::is_invocable_v<Run, Arguments&, Environment&>)
+        return run(*arguments, environment);
+      else
+        return run(*arguments, invocation.progress, environment);
+    };
+  });
+}
 
 /// Each registers one subcommand of `parser`. When arguments choose it, `invocation` is filled;
 /// both must outlive the parsing.

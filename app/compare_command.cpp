@@ -151,66 +151,63 @@ Examples:
   meshhier compare a.hier b.hier --transform a_to_b.txt --unsigned
 )";
 
+/// Adds FROM and TO.
+void add_compared(CLI::App& command, CompareArguments& arguments) {
+  command
+      .add_option("FROM", arguments.from,
+                  "A hierarchy: a directory, an archive, an address; or a mesh")
+      ->required();
+  command.add_option("TO", arguments.to, "The one that distances are measured to")->required();
+  add_web_options(command, arguments.web);
+  CLI::App* what = add_group(command, "What", "At most one of these; else the original surfaces");
+  add_detail_options(*what, "Of both this level; the root is 0", arguments.options.selection);
+}
+
+/// Adds what says how distances are measured.
+void add_measuring(CLI::App& command, CompareArguments& arguments) {
+  comparing::CompareOptions& options = arguments.options;
+  command
+      .add_option_function<std::string>(
+          "--tolerance", [&options](const std::string& text) { store_tolerance(text, options); },
+          "No vertex may be farther: a length in the units of TO, or with a unit: 0.5mm")
+      ->type_name("LENGTH");
+  command.add_flag("--unsigned", arguments.has_no_sign,
+                   "Do not look on which side of TO the vertices are");
+  command.add_flag("--bound", options.bounds_triangles,
+                   "Bound tightly what lies between the vertices; takes up to three times as long");
+  add_name_option(command,
+                  {"--transform", "Moves FROM first: 16 numbers, a 4 x 4 matrix, rows first"},
+                  arguments.transform);
+}
+
+/// Adds what says where the distances go.
+void add_results(CLI::App& command, CompareArguments& arguments) {
+  comparing::CompareOptions& options = arguments.options;
+  add_name_option(command, {"-o,--output", "FROM with the distances: .hier or .3tz, or else a PLY"},
+                  arguments.output);
+  command.add_flag("--force", options.replace, "Replace a file that is there");
+  add_integer_option(
+      command,
+      {"--objects", "List so many objects of FROM, the farthest first; 0: none [20]", 0,
+       kMostObjects},
+      [&options](std::uint64_t count) { options.listed_objects = static_cast<std::size_t>(count); })
+      ->type_name("N");
+  command.add_flag("--json", arguments.json, "For scripts");
+}
+
 }  // namespace
 
 void add_compare_command(CLI::App& parser, Invocation& invocation) {
   const auto arguments = std::make_shared<CompareArguments>();
   CLI::App* command =
       parser.add_subcommand("compare", "Measure how far one mesh or hierarchy is from another");
-  command
-      ->add_option("FROM", arguments->from,
-                   "A hierarchy: a directory, an archive, an address; or a mesh")
-      ->required();
-  command->add_option("TO", arguments->to, "The one that distances are measured to")->required();
-  add_web_options(*command, arguments->web);
-
-  CLI::App* what = add_group(*command, "What", "At most one of these; else the original surfaces");
-  add_integer_option(*what, {"--level", "Of both this level; the root is 0", 0, kDeepestLevel},
-                     [arguments](std::uint64_t level) {
-                       arguments->options.selection = static_cast<Level>(level);
-                     });
-  add_error_option(*what, [arguments](double error) {
-    arguments->options.selection = exporting::LargestError{error};
-  });
-  what->require_option(0, 1);
-  command
-      ->add_option_function<std::string>(
-          "--tolerance",
-          [arguments](const std::string& text) { store_tolerance(text, arguments->options); },
-          "No vertex may be farther: a length in the units of TO, or with a unit: 0.5mm")
-      ->type_name("LENGTH");
-  command->add_flag("--unsigned", arguments->has_no_sign,
-                    "Do not look on which side of TO the vertices are");
-  command->add_flag(
-      "--bound", arguments->options.bounds_triangles,
-      "Bound tightly what lies between the vertices; takes up to three times as long");
-  command
-      ->add_option("--transform", arguments->transform,
-                   "Moves FROM first: 16 numbers, a 4 x 4 matrix, rows first")
-      ->type_name("FILE")
-      ->check(name_fault);
-  command
-      ->add_option("-o,--output", arguments->output,
-                   "FROM with the distances: .hier or .3tz, or else a PLY")
-      ->type_name("FILE")
-      ->check(name_fault);
-  command->add_flag("--force", arguments->options.replace, "Replace a file that is there");
-  add_integer_option(*command,
-                     {"--objects", "List so many objects of FROM, the farthest first; 0: none [20]",
-                      0, kMostObjects},
-                     [arguments](std::uint64_t count) {
-                       arguments->options.listed_objects = static_cast<std::size_t>(count);
-                     })
-      ->type_name("N");
-  command->add_flag("--json", arguments->json, "For scripts");
+  add_compared(*command, *arguments);
+  add_measuring(*command, *arguments);
+  add_results(*command, *arguments);
   add_memory_budget_option(*command, arguments->options.memory_budget);
   add_progress_option(*command, invocation.progress);
   command->footer(kCompareFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments, &invocation](Environment& environment) {
-      return run_compare(*arguments, invocation.progress, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_compare);
 }
 
 }  // namespace meshhier::app

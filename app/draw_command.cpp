@@ -223,12 +223,7 @@ void add_sheet(CLI::App& command, DrawingOptions& options) {
 
 void add_detail(CLI::App& command, DrawingOptions& options) {
   CLI::App* what = add_group(command, "Detail", "At most one of these");
-  add_integer_option(
-      *what, {"--level", "All tiles of this level; the root is 0", 0, kDeepestLevel},
-      [&options](std::uint64_t level) { options.selection = static_cast<Level>(level); });
-  add_error_option(
-      *what, [&options](double error) { options.selection = exporting::LargestError{error}; });
-  what->require_option(0, 1);
+  add_detail_options(*what, "All tiles of this level; the root is 0", options.selection);
 }
 
 constexpr const char* kDrawFooter =
@@ -279,11 +274,7 @@ void add_draw_command(CLI::App& parser, Invocation& invocation) {
   add_memory_budget_option(*command, arguments->options.memory_budget);
   add_progress_option(*command, invocation.progress);
   command->footer(kDrawFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments, &invocation](Environment& environment) {
-      return run_draw(*arguments, invocation.progress, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_draw);
 }
 
 }  // namespace meshhier::app

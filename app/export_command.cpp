@@ -187,9 +187,8 @@ void add_raster_options(CLI::App& command, ExportArguments& arguments) {
           },
           "A place where pixels have a corner [0,0]")
       ->type_name("X,Y");
-  group->add_option("--dsm", arguments.heights, "Write the heights of the highest surface, too")
-      ->type_name("FILE")
-      ->check(name_fault);
+  add_name_option(*group, {"--dsm", "Write the heights of the highest surface, too"},
+                  arguments.heights);
 }
 
 }  // namespace

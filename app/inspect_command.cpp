@@ -81,11 +81,7 @@ void add_inspect_command(CLI::App& parser, Invocation& invocation) {
   add_where_option(*command, arguments->where);
   add_place_options(*command, arguments->options.level, arguments->options.node);
   command->footer(kInspectFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments](Environment& environment) {
-      return run_inspect(*arguments, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_inspect);
 }
 
 }  // namespace meshhier::app

@@ -17,6 +17,7 @@
 #include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <memory>
 #include <new>
@@ -25,7 +26,6 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -256,41 +256,46 @@ std::vector<std::string> words_of(std::span<char* const> arguments) {
   return words;
 }
 
-int run(int argc, char** argv, const execution::CancelToken& cancel) {
+/// Adds all commands, in the order in which the help lists them.
+void add_commands(CLI::App& parser, Invocation& invocation) {
+  for (const auto add :
+       {add_build_command, add_inspect_command, add_verify_command, add_compare_command,
+        add_query_command, add_export_command, add_preview_command, add_draw_command,
+        add_view_command, add_page_command, add_progressive_command, add_reconstruct_command,
+        add_serve_command, add_plan_command, add_task_command, add_clean_command,
+        add_completion_command, add_manual_command})
+    add(parser, invocation);
+}
+
+/// Returns what stands before the chosen command's own work: checks of what it is told.
+std::function<int(Environment&)> with_checks(const CLI::App& parser, const Invocation& invocation) {
+  return [&, chosen = invocation.run](Environment& environment) {
+    for (const CLI::App* command : parser.get_subcommands()) {
+      require_inputs_stay(*command, environment.files);
+      warn_of_budget(*command, invocation.progress, environment);
+    }
+    return chosen(environment);
+  };
+}
+
+int run(std::span<char* const> arguments, const execution::CancelToken& cancel) {
   Invocation invocation;
-  if (argc > 0)
-    invocation.program = argv[0];
+  if (!arguments.empty())
+    invocation.program = arguments[0];
   CLI::App parser(kDescription, "meshhier");
   parser.set_version_flag("--version", "meshhier " MESHHIER_VERSION);
   parser.require_subcommand(1);
   parser.footer(kFooter);
-  add_build_command(parser, invocation);
-  add_inspect_command(parser, invocation);
-  add_verify_command(parser, invocation);
-  add_compare_command(parser, invocation);
-  add_query_command(parser, invocation);
-  add_export_command(parser, invocation);
-  add_preview_command(parser, invocation);
-  add_draw_command(parser, invocation);
-  add_view_command(parser, invocation);
-  add_page_command(parser, invocation);
-  add_progressive_command(parser, invocation);
-  add_reconstruct_command(parser, invocation);
-  add_serve_command(parser, invocation);
-  add_plan_command(parser, invocation);
-  add_task_command(parser, invocation);
-  add_clean_command(parser, invocation);
-  add_completion_command(parser, invocation);
-  add_manual_command(parser, invocation);
+  add_commands(parser, invocation);
 
-  const std::vector<std::string> names = command_names(parser);
-  const bool as_json = asks_for_json({argv, static_cast<std::size_t>(argc)});
-  if (argc > 1 && is_unknown_command(argv[1], names))
-    return report_mistake(unknown_command(argv[1], parser), as_json);
-  if (argc <= 1)
+  const bool as_json = asks_for_json(arguments);
+  if (arguments.size() <= 1)
     return report_mistake(no_command(parser), as_json);
+  if (is_unknown_command(arguments[1], command_names(parser)))
+    return report_mistake(unknown_command(arguments[1], parser), as_json);
   try {
-    parser.parse(words_of({argv, static_cast<std::size_t>(argc)}));
+    parser.parse(words_of(arguments));
+    invocation.run = with_checks(parser, invocation);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() != 0) {
       return report_mistake(parser.get_subcommands().empty() ? no_command(parser) : error.what(),
@@ -299,14 +304,6 @@ int run(int argc, char** argv, const execution::CancelToken& cancel) {
     invocation.run = [&](Environment&) { return parser.exit(error); };  // --help and --version
     return execute_guarded(invocation, cancel);
   }
-  invocation.run = [&parser, &invocation,
-                    chosen = std::move(invocation.run)](Environment& environment) {
-    for (const CLI::App* command : std::as_const(parser).get_subcommands()) {
-      require_inputs_stay(*command, environment.files);
-      warn_of_budget(*command, invocation.progress, environment);
-    }
-    return chosen(environment);
-  };
   return execute_guarded(invocation, cancel);
 }
 
@@ -317,5 +314,5 @@ int run(int argc, char** argv, const execution::CancelToken& cancel) {
 int main(int argc, char** argv) {
   std::set_terminate(meshhier::app::end_told);
   meshhier::app::reserve_standard_descriptors();
-  return meshhier::app::run(argc, argv, meshhier::app::signal_token());
+  return meshhier::app::run({argv, static_cast<std::size_t>(argc)}, meshhier::app::signal_token());
 }

@@ -152,13 +152,24 @@ std::string name_fault(const std::string& text) {
   return text.empty() ? "expected a name, found nothing" : "";
 }
 
+CLI::Option* add_name_option(CLI::App& command, const NameOption& option, std::string& value) {
+  return command.add_option(option.name, value, option.help)
+      ->type_name(option.type)
+      ->check(name_fault);
+}
+
 void add_file_output_options(CLI::App& command, const std::string& help, std::string& output,
                              bool& replace, Given given) {
-  command.add_option("-o,--output", output, help + "; \"-\" is standard output")
-      ->type_name("FILE")
-      ->check(name_fault)
+  add_name_option(command, {"-o,--output", help + "; \"-\" is standard output"}, output)
       ->required(given == Given::always);
   command.add_flag("--force", replace, "Replace an existing file");
+}
+
+void add_made_hierarchy_option(CLI::App& command, std::string& output) {
+  add_name_option(
+      command,
+      {"-o,--output", "The hierarchy to make: a directory, or one file if it ends in .3tz", "PATH"},
+      output);
 }
 
 std::ostream& account_stream(const Environment& environment, const std::filesystem::path& output) {

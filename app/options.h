@@ -4,6 +4,7 @@
 #include "app/command.h"
 #include "execution/progress.h"
 #include "export/asked_region.h"
+#include "export/cut_by_error.h"
 #include "hierarchy/ids.h"
 
 #include <cstdint>
@@ -35,6 +36,9 @@ enum class Given { always, not_always };
 /// Adds -o FILE and --force, for commands that make one file.
 void add_file_output_options(CLI::App& command, const std::string& help, std::string& output,
                              bool& replace, Given given = Given::always);
+
+/// Adds -o PATH, for commands that make a hierarchy.
+void add_made_hierarchy_option(CLI::App& command, std::string& output);
 
 /// Returns the stream on which a command that writes `output` tells what it did: not standard
 /// output if that is the output.
@@ -74,6 +78,14 @@ struct TextOption {
 CLI::Option* add_text_option(CLI::App& command, const TextOption& option,
                              const std::function<bool(const std::string&)>& store);
 
+/// An option whose value is a name; an empty one is refused.
+struct NameOption {
+  std::string name;
+  std::string help;
+  const char* type = "FILE";
+};
+CLI::Option* add_name_option(CLI::App& command, const NameOption& option, std::string& value);
+
 /// Adds --node L/I.
 CLI::Option* add_node_option(CLI::App& command, const char* help, std::optional<NodeId>& node);
 
@@ -90,6 +102,15 @@ CLI::App* add_group(CLI::App& command, const char* name, const char* help);
 
 /// Adds --error LENGTH, which asks for the coarsest tiles that are no farther from the original.
 CLI::Option* add_error_option(CLI::App& command, const std::function<void(double)>& store);
+/// Adds --level L and --error LENGTH to a group, of whose options at most one may be given then.
+template <class Selection>
+void add_detail_options(CLI::App& group, const char* level_help, Selection& selection) {
+  add_integer_option(group, {"--level", level_help, 0, kDeepestLevel},
+                     [&selection](std::uint64_t level) { selection = static_cast<Level>(level); });
+  add_error_option(group,
+                   [&selection](double error) { selection = exporting::LargestError{error}; });
+  group.require_option(0, 1);
+}
 /// Adds --where CONDITION.
 CLI::Option* add_where_option(CLI::App& command, std::string& where);
 /// Adds --box X,Y,Z X,Y,Z, --polygon FILE, --crs CRS, --object NAME and --where, as a group.

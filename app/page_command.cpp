@@ -182,11 +182,7 @@ void add_page_command(CLI::App& parser, Invocation& invocation) {
       ->type_name("DIR");
   add_progress_option(*command, invocation.progress);
   command->footer(kPageFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments, &invocation](Environment& environment) {
-      return run_page(*arguments, invocation.progress, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_page);
 }
 
 }  // namespace meshhier::app

@@ -86,20 +86,14 @@ void add_plan_command(CLI::App& parser, Invocation& invocation) {
   CLI::App* command = parser.add_subcommand("plan", "Cut a build into tasks for many machines");
   command->add_option("FILE", arguments->named,
                       "A mesh, several meshes that are joined, or a config, as for build");
-  command
-      ->add_option("--work", arguments->work, "The directory for what the tasks make; it is made")
-      ->type_name("DIR")
-      ->required()
-      ->check(name_fault);
+  add_name_option(*command, {"--work", "The directory for what the tasks make; it is made", "DIR"},
+                  arguments->work)
+      ->required();
   add_integer_option(*command,
                      {"--tasks", "Tasks that a stage is cut into", 1, pipeline::kMostTasks},
                      [arguments](std::uint64_t tasks) { arguments->tasks = tasks; })
       ->required();
-  command
-      ->add_option("-o,--output", arguments->output,
-                   "The hierarchy to make: a directory, or one file if it ends in .3tz")
-      ->type_name("PATH")
-      ->check(name_fault);
+  add_made_hierarchy_option(*command, arguments->output);
   command->add_option("--set", arguments->settings, "Set keys of the config, as for build")
       ->type_name("KEY=VALUE");
   command->add_flag("--force", arguments->force, "Replace an existing output");

@@ -196,11 +196,10 @@ void add_look(CLI::App& command, PreviewArguments& arguments) {
                     options.view = parse_view(text);
                     return options.view.has_value();
                   });
-  command
-      .add_option("--link", options.link,
-                  "Draws what the page shows from this link: all of it, or from # on")
-      ->type_name("LINK")
-      ->check(name_fault);
+  add_name_option(
+      command,
+      {"--link", "Draws what the page shows from this link: all of it, or from # on", "LINK"},
+      options.link);
   add_text_option(command,
                   {"--up",
                    "Which axis of the input points up; if not given, as the "
@@ -232,12 +231,12 @@ void add_colours(CLI::App& command, PreviewArguments& arguments) {
   CLI::Option* attribute = command.add_option("--attribute", colours.attribute,
                                               "Colours by this attribute; inspect lists them");
   attribute->type_name("NAME");
-  command
-      .add_option("--colour-by", arguments.property,
-                  "Colours each object by this property, or by name, area or triangles; tells what "
-                  "they mean")
-      ->type_name("PROPERTY")
-      ->check(name_fault)
+  add_name_option(
+      command,
+      {"--colour-by",
+       "Colours each object by this property, or by name, area or triangles; tells what they mean",
+       "PROPERTY"},
+      arguments.property)
       ->excludes(attribute);
   add_text_option(command,
                   {"--ramp", "Its colours; if not given, coolwarm for signed values, else viridis",
@@ -311,11 +310,7 @@ void add_preview_command(CLI::App& parser, Invocation& invocation) {
   add_progress_option(*command, invocation.progress);
   add_hints_at_drawings(*command);
   command->footer(kPreviewFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments, &invocation](Environment& environment) {
-      return run_preview(*arguments, invocation.progress, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_preview);
 }
 
 }  // namespace meshhier::app

@@ -55,19 +55,13 @@ void add_progressive_command(CLI::App& parser, Invocation& invocation) {
                      [arguments](std::uint64_t steps) {
                        arguments->options.steps = static_cast<std::uint32_t>(steps);
                      });
-  command->add_option("-o,--output", arguments->output, "The directory to make")
-      ->type_name("DIR")
-      ->check(name_fault)
+  add_name_option(*command, {"-o,--output", "The directory to make", "DIR"}, arguments->output)
       ->required();
   command->add_flag("--force", arguments->options.replace, "Replace a stream that is there");
   add_memory_budget_option(*command, arguments->options.memory_budget);
   add_progress_option(*command, invocation.progress);
   command->footer(kProgressiveFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments, &invocation](Environment& environment) {
-      return run_progressive(*arguments, invocation.progress, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_progressive);
 }
 
 }  // namespace meshhier::app

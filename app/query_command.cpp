@@ -94,23 +94,13 @@ void add_query_command(CLI::App& parser, Invocation& invocation) {
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
 
   CLI::App* rows = add_group(*command, "Rows", "Exactly one of these");
-  rows->add_option("--points", arguments->points, "What is nearest to the points of FILE")
-      ->type_name("FILE")
-      ->check(name_fault);
-  rows->add_option("--rays", arguments->rays, "What the rays of FILE hit first, from either side")
-      ->type_name("FILE")
-      ->check(name_fault);
+  add_name_option(*rows, {"--points", "What is nearest to the points of FILE"}, arguments->points);
+  add_name_option(*rows, {"--rays", "What the rays of FILE hit first, from either side"},
+                  arguments->rays);
   rows->require_option(1);
 
   CLI::App* what = add_group(*command, "What", "At most one of these; else the original surface");
-  add_integer_option(*what, {"--level", "All tiles of this level; the root is 0", 0, kDeepestLevel},
-                     [arguments](std::uint64_t level) {
-                       arguments->options.selection = static_cast<Level>(level);
-                     });
-  add_error_option(*what, [arguments](double error) {
-    arguments->options.selection = exporting::LargestError{error};
-  });
-  what->require_option(0, 1);
+  add_detail_options(*what, "All tiles of this level; the root is 0", arguments->options.selection);
   add_region_options(*command, arguments->options.piece);
   command->add_flag("--signed", arguments->options.has_sides,
                     "Of points: tell the side; distances are below 0 inside");
@@ -128,11 +118,7 @@ void add_query_command(CLI::App& parser, Invocation& invocation) {
   add_memory_budget_option(*command, arguments->options.memory_budget);
   add_progress_option(*command, invocation.progress);
   command->footer(kQueryFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments, &invocation](Environment& environment) {
-      return run_query_command(*arguments, invocation.progress, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_query_command);
 }
 
 }  // namespace meshhier::app

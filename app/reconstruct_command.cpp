@@ -77,11 +77,7 @@ void add_reconstruct_command(CLI::App& parser, Invocation& invocation) {
   add_memory_budget_option(*command, arguments->options.memory_budget);
   add_progress_option(*command, invocation.progress);
   command->footer(kReconstructFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments, &invocation](Environment& environment) {
-      return run_reconstruct(*arguments, invocation.progress, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_reconstruct);
 }
 
 }  // namespace meshhier::app

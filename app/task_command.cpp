@@ -139,12 +139,12 @@ void add_task_command(CLI::App& parser, Invocation& invocation) {
       ->check(name_fault);
   command->add_option("STAGE", arguments->stage, "Of which stage");
   add_worker_options(*command, *arguments);
-  command
-      ->add_option("--scratch", arguments->scratch,
-                   "A directory of this machine for temporary files: only what is finished goes "
-                   "to DIR")
-      ->type_name("FOLDER")
-      ->check(name_fault);
+  add_name_option(
+      *command,
+      {"--scratch",
+       "A directory of this machine for temporary files: only what is finished goes to DIR",
+       "FOLDER"},
+      arguments->scratch);
   constexpr std::uint64_t kMostThreads = 4096;
   add_integer_option(*command, {"--threads", "Instead of the config's", 1, kMostThreads},
                      [arguments](std::uint64_t threads) {
@@ -167,11 +167,7 @@ void add_task_command(CLI::App& parser, Invocation& invocation) {
       ->needs(status);
   add_progress_option(*command, invocation.progress);
   command->footer(kTaskFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments, &invocation](Environment& environment) {
-      return run_task(*arguments, invocation.progress, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_task);
 }
 
 }  // namespace meshhier::app

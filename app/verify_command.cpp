@@ -204,11 +204,7 @@ void add_verify_command(CLI::App& parser, Invocation& invocation) {
   command->add_flag("--json", arguments->json, "One JSON object, for programs");
   add_progress_option(*command, invocation.progress);
   command->footer(kVerifyFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments, &invocation](Environment& environment) {
-      return run_verify(*arguments, invocation.progress, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_verify);
 }
 
 }  // namespace meshhier::app

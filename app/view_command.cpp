@@ -76,11 +76,9 @@ void add_view_command(CLI::App& parser, Invocation& invocation) {
   CLI::App* command =
       parser.add_subcommand("view", "Print or change how a hierarchy is shown first");
   add_hierarchy_options(*command, arguments->hierarchy, arguments->web);
-  command
-      ->add_option("--link", arguments->link,
-                   "Takes what this link of the page says, from # on or all of it")
-      ->type_name("LINK")
-      ->check(name_fault);
+  add_name_option(
+      *command, {"--link", "Takes what this link of the page says, from # on or all of it", "LINK"},
+      arguments->link);
   command
       ->add_option("--set", arguments->settings,
                    "Changes a key: view.KEY=VALUE, or view={...} for all of it")
@@ -88,11 +86,7 @@ void add_view_command(CLI::App& parser, Invocation& invocation) {
       ->allow_extra_args(false);
   command->add_flag("--clear", arguments->clears, "Forgets the view that is there");
   command->footer(kViewFooter);
-  command->callback([arguments, &invocation] {
-    invocation.run = [arguments](Environment& environment) {
-      return run_view(*arguments, environment);
-    };
-  });
+  run_if_chosen(*command, invocation, arguments, run_view);
 }
 
 }  // namespace meshhier::app
