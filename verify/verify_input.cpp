@@ -230,16 +230,14 @@ CornerFacts facts_of(std::uint64_t hash, Vec3f position, std::span<const float> 
   return facts;
 }
 
-/// `texels`: takes the triangles of a textured input; else null.
-InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source, TexelCheck* texels) {
+/// Adds up the vertices; puts into `table` what corners need of each.
+void sum_vertices(const VerifyJob& job, mesh_io::MeshSource& source,
+                  storage::RecordSpool<CornerFacts>& table, InputSums& result) {
   const AttributeLayout& layout = source.description().attributes;
   const auto all_channels = static_cast<std::size_t>(layout.channels());
   const auto channels = static_cast<std::size_t>(kept_layout(layout).channels());
   const Vec3d origin = job.reader.manifest().origin;
   const auto& quantization = job.reader.manifest().quantization;
-  InputSums result;
-  MeshSums& sums = result.mesh;
-  storage::RecordSpool<CornerFacts> table(job.scratch, kSpoolBlockBytes);
   std::optional<PlaceCount> places;
   if (has_topology_by_place(job))
     places.emplace(job.scratch, job.options.memory_budget / 4);
@@ -256,7 +254,7 @@ InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source, TexelChec
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const auto all = block.attributes.subspan(i * all_channels, all_channels);
       const auto attributes = all.first(channels);
-      sums.add_vertex(positions[i], attributes);
+      result.mesh.add_vertex(positions[i], attributes);
       facts.push_back(
           facts_of(hash_vertex(kVertexTable, positions[i], attributes), positions[i], all, layout));
     }
@@ -264,7 +262,13 @@ InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source, TexelChec
   });
   if (places)
     result.places = places->finish();
-  places.reset();
+}
+
+/// Adds up the triangles by the table of vertices. `texels` takes those of a textured input; else
+/// it is null.
+void sum_triangles(const VerifyJob& job, mesh_io::MeshSource& source,
+                   const storage::RecordSpool<CornerFacts>& table, TexelCheck* texels,
+                   MeshSums& sums) {
   partition::Renumberer<CornerFacts> renumberer(
       table,
       partition::plan_renumbering(table.size(), sizeof(CornerFacts), job.options.memory_budget / 4),
@@ -290,6 +294,13 @@ InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source, TexelChec
       add();
     }
   }
+}
+
+InputSums sum_input(const VerifyJob& job, mesh_io::MeshSource& source, TexelCheck* texels) {
+  InputSums result;
+  storage::RecordSpool<CornerFacts> table(job.scratch, kSpoolBlockBytes);
+  sum_vertices(job, source, table, result);
+  sum_triangles(job, source, table, texels, result.mesh);
   return result;
 }
 
@@ -349,6 +360,26 @@ void compare_files(const VerifyJob& job, importing::MeshInput& input,
     compare_each(expected.files, found.files, problems);
 }
 
+/// Returns the attributes of an input as the manifest has those of the mesh it was made of.
+AttributeLayout layout_as_told(const VerifyJob& job, const AttributeLayout& layout) {
+  const SourceSummary& expected = job.reader.manifest().source;
+  AttributeLayout kept = kept_layout(layout);
+  if (job.reader.manifest().screen_colours)
+    kept.space = expected.attributes.space;  // older formats did not tell the two apart
+  kept.tints = expected.attributes.tints;    // says how colours are seen, not which they are
+  if (kept.has_colours() && expected.count_of(importing::kColoursTakenForBytes) > 0)
+    kept.colour = ColourType::u8;
+  return kept;
+}
+
+void compare_counts(const VerifyJob& job, const InputSums& sums, const InputProblems& problems) {
+  const SourceSummary& expected = job.reader.manifest().source;
+  problems.compare("vertices", expected.vertices, sums.mesh.vertices.count);
+  problems.compare("triangles", expected.triangles, sums.mesh.triangles.count);
+  if (sums.places)
+    problems.compare("different places of vertices", job.tree().vertex_count(), *sums.places);
+}
+
 void compare_sums(const MeshSums& input, const MeshSums& partitions,
                   const InputProblems& problems) {
   const auto compare = [&](std::string_view what, const MultisetSum& in, const MultisetSum& out) {
@@ -364,6 +395,24 @@ void compare_sums(const MeshSums& input, const MeshSums& partitions,
   compare("triangles", input.triangles, partitions.triangles);
 }
 
+void compare_with_lattice(const VerifyJob& job, double worst_rounding,
+                          const InputProblems& problems) {
+  const auto& quantization = job.reader.manifest().quantization;
+  if (quantization && worst_rounding > quantization->worst_rounding) {
+    problems.add(fmt::format("a vertex is {} from its place on the lattice, more than the {} told",
+                             worst_rounding, quantization->worst_rounding));
+  }
+}
+
+void read_input(const VerifyJob& job, importing::MeshInput& files) {
+  if (job.reader.manifest().source.count_of(importing::kDroppedUnplaced) > 0)
+    files.note_unplaced();
+  if (files.needs_import()) {
+    files.import({job.scratch.path().string() + "-import", job.scratch.path().string() + "-sorts",
+                  job.scratch.pool(), job.options.memory_budget / 8, job.progress, job.cancel});
+  }
+}
+
 }  // namespace
 
 void verify_input(const VerifyJob& job) {
@@ -372,23 +421,13 @@ void verify_input(const VerifyJob& job) {
   mesh_io::InputPaths inputs = job.options.input;
   const importing::InputUse use = take_input_use(job, inputs);
   importing::MeshInput files(inputs, job.files, use);
-  if (expected.count_of(importing::kDroppedUnplaced) > 0)
-    files.note_unplaced();
-  if (files.needs_import()) {
-    files.import({job.scratch.path().string() + "-import", job.scratch.path().string() + "-sorts",
-                  job.scratch.pool(), job.options.memory_budget / 8, job.progress, job.cancel});
-  }
+  read_input(job, files);
   job.progress.stage("input", job.tree().partition_count(), "partitions");
   compare_files(job, files, problems);
   const auto source = files.open();
   const AttributeLayout& layout = source->description().attributes;
-  AttributeLayout kept = kept_layout(layout);
-  if (job.reader.manifest().screen_colours)
-    kept.space = expected.attributes.space;  // older formats did not tell the two apart
-  kept.tints = expected.attributes.tints;    // says how colours are seen, not which they are
-  if (kept.has_colours() && expected.count_of(importing::kColoursTakenForBytes) > 0)
-    kept.colour = ColourType::u8;
-  if (kept != expected.attributes || layout.material != expected.textures.has_value()) {
+  if (layout_as_told(job, layout) != expected.attributes ||
+      layout.material != expected.textures.has_value()) {
     problems.add("has other vertex attributes than the mesh the hierarchy was made of");
     return;
   }
@@ -399,22 +438,14 @@ void verify_input(const VerifyJob& job) {
   if (layout.material)
     texels.emplace(job, files);
   const InputSums sums = sum_input(job, *source, texels ? &*texels : nullptr);
-  const MeshSums& input = sums.mesh;
-  problems.compare("vertices", expected.vertices, input.vertices.count);
-  problems.compare("triangles", expected.triangles, input.triangles.count);
-  if (sums.places)
-    problems.compare("different places of vertices", job.tree().vertex_count(), *sums.places);
-  const MeshSums partitions = sum_partitions(job);
-  compare_sums(input, partitions, problems);
-  const auto& quantization = job.reader.manifest().quantization;
-  if (quantization && sums.worst_rounding > quantization->worst_rounding) {
-    problems.add(fmt::format("a vertex is {} from its place on the lattice, more than the {} told",
-                             sums.worst_rounding, quantization->worst_rounding));
-  }
-  job.checks.push_back(fmt::format(
-      "input: {}{} and {} compared with those of the partitions, bit for bit",
-      counted(input.vertices.count, "vertices"), quantization ? ", rounded to the lattice," : "",
-      counted(input.triangles.count, "triangles")));
+  compare_counts(job, sums, problems);
+  compare_sums(sums.mesh, sum_partitions(job), problems);
+  compare_with_lattice(job, sums.worst_rounding, problems);
+  job.checks.push_back(
+      fmt::format("input: {}{} and {} compared with those of the partitions, bit for bit",
+                  counted(sums.mesh.vertices.count, "vertices"),
+                  job.reader.manifest().quantization ? ", rounded to the lattice," : "",
+                  counted(sums.mesh.triangles.count, "triangles")));
   if (texels)
     texels->compare();
 }

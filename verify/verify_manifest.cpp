@@ -81,69 +81,111 @@ std::string first_difference(const Json& part, const Json& whole, const std::str
   return "";
 }
 
-/// Checks that the rest of the manifest agrees with the config. Older programs wrote fewer keys.
-void check_config_against_rest(const storage::Manifest& manifest, const config::Config& config,
-                               const ManifestProblems& problems) {
-  const Json& told = manifest.config;
-  const auto says = [&](const char* pointer) { return told.contains(Json::json_pointer(pointer)); };
-  const SourceSummary& source = manifest.source;
-  const std::uint64_t most = config::partition_vertices(
-      config, source.places, source.textures ? source.textures->texels : 0);
-  const std::uint64_t partitions = config.partition.count.value_or((source.places - 1) / most + 1);
-  if (says("/partition/count") || says("/partition/vertices"))
-    problems.compare("partitions", std::uint64_t{manifest.partition_count}, partitions);
-  if (says("/storage/compression")) {
-    problems.compare("storage.compression", storage::row_of(manifest.compression).name,
-                     storage::row_of(config.storage.compression).name);
+/// Checks that the rest of the manifest agrees with the config. Older programs wrote fewer keys, of
+/// which nothing is required.
+class ConfigAgreement {
+ public:
+  ConfigAgreement(const storage::Manifest& manifest, const config::Config& config,
+                  const ManifestProblems& problems)
+      : manifest_(manifest), config_(config), problems_(problems) {}
+
+  void check() const {
+    check_partitions();
+    check_compression();
+    check_normals();
+    check_pictures();
+    check_first_sight();
+    check_place();
+    problems_.compare("licence", manifest_.licence, config_.licence);
   }
-  problems.require(!manifest.computed_normals || config.storage.normals != config::Normals::none,
-                   "\"storage.normals\" are computed, but \"config\" asks for none");
-  if (says("/storage/normals")) {
-    const bool is_unlit = manifest.textures && manifest.textures->unlit;
-    const bool needs_normals = config.storage.normals != config::Normals::none &&
-                               !source.attributes.normals && source.triangles > 0 && !is_unlit;
-    problems.require(manifest.computed_normals || !needs_normals,
-                     "\"config\" asks for normals, but \"storage.normals\" are not computed");
+
+ private:
+  bool says(const char* pointer) const {
+    return manifest_.config.contains(Json::json_pointer(pointer));
   }
-  problems.require(!manifest.normal_maps || config::makes_maps(config.storage.normals),
-                   "there are normal maps, but \"config\" asks for none");
-  if (says("/normal_map/format")) {
-    problems.require(!manifest.normal_maps || *manifest.normal_maps == config.normal_map.format,
-                     "\"storage.normal_map\" is not that of \"config.normal_map\"");
+
+  void check_partitions() const {
+    const SourceSummary& source = manifest_.source;
+    const std::uint64_t most = config::partition_vertices(
+        config_, source.places, source.textures ? source.textures->texels : 0);
+    const std::uint64_t partitions =
+        config_.partition.count.value_or((source.places - 1) / most + 1);
+    if (says("/partition/count") || says("/partition/vertices"))
+      problems_.compare("partitions", std::uint64_t{manifest_.partition_count}, partitions);
   }
-  if (says("/texture/format")) {
+
+  void check_compression() const {
+    if (says("/storage/compression")) {
+      problems_.compare("storage.compression", storage::row_of(manifest_.compression).name,
+                        storage::row_of(config_.storage.compression).name);
+    }
+  }
+
+  void check_normals() const {
+    const SourceSummary& source = manifest_.source;
+    const bool may_have_some = config_.storage.normals != config::Normals::none;
+    problems_.require(!manifest_.computed_normals || may_have_some,
+                      "\"storage.normals\" are computed, but \"config\" asks for none");
+    if (says("/storage/normals")) {
+      const bool is_unlit = manifest_.textures && manifest_.textures->unlit;
+      const bool needs_normals =
+          may_have_some && !source.attributes.normals && source.triangles > 0 && !is_unlit;
+      problems_.require(manifest_.computed_normals || !needs_normals,
+                        "\"config\" asks for normals, but \"storage.normals\" are not computed");
+    }
+    problems_.require(!manifest_.normal_maps || config::makes_maps(config_.storage.normals),
+                      "there are normal maps, but \"config\" asks for none");
+    if (says("/normal_map/format")) {
+      problems_.require(
+          !manifest_.normal_maps || *manifest_.normal_maps == config_.normal_map.format,
+          "\"storage.normal_map\" is not that of \"config.normal_map\"");
+    }
+  }
+
+  void check_pictures() const {
+    if (!says("/texture/format") || !manifest_.textures)
+      return;
     // Until version 12 pictures stayed as "texture" says, whatever "storage.normals" was.
-    const bool is_as_before = !manifest.has_relief() && manifest.textures == config.texture.format;
-    problems.require(
-        !manifest.textures || *manifest.textures == config.picture_format() || is_as_before,
-        "\"storage.texture\" is not that of \"config.texture\"");
-    problems.require(!manifest.textures || config.texture.use,
-                     "there are textures, but \"config\" asks for none");
+    const bool is_as_before =
+        !manifest_.has_relief() && manifest_.textures == config_.texture.format;
+    problems_.require(*manifest_.textures == config_.picture_format() || is_as_before,
+                      "\"storage.texture\" is not that of \"config.texture\"");
+    problems_.require(config_.texture.use, "there are textures, but \"config\" asks for none");
   }
-  if (says("/preview"))
-    problems.compare("the existence of \"preview\"", manifest.preview.has_value(), config.preview);
-  problems.require(
-      !config.first_view.standpoint() || manifest.first_view == config.first_view.standpoint(),
-      "\"first_view\" is not that of \"config\"");
-  if (says("/up"))
-    problems.compare("up", name_of(manifest.up), name_of(config.up_axis()));
-  problems.require(manifest.units == (config.units ? config.units : manifest.source.units),
-                   "\"units\" are not those of \"config\" or the source");
-  if (config.placement.crs) {
-    problems.require(
-        manifest.transform && config::fits_map(config, manifest.source.bounds, *manifest.transform),
-        "\"transform\" is not near that of \"config.placement\"");
-  } else if (says("/placement")) {
-    problems.require(
-        manifest.transform == config::tileset_transform(config, manifest.source.bounds),
-        "\"transform\" is not that of \"config.placement\"");
+
+  void check_first_sight() const {
+    if (says("/preview"))
+      problems_.compare("the existence of \"preview\"", manifest_.preview.has_value(),
+                        config_.preview);
+    const auto standpoint = config_.first_view.standpoint();
+    problems_.require(!standpoint || manifest_.first_view == standpoint,
+                      "\"first_view\" is not that of \"config\"");
+    if (says("/up"))
+      problems_.compare("up", name_of(manifest_.up), name_of(config_.up_axis()));
   }
-  if (says("/tileset/pixels")) {
-    problems.require(manifest.tileset_pixels == config.tileset.pixels,
-                     "\"tileset.pixels\" are not those of \"config\"");
+
+  void check_place() const {
+    const BoundsD& bounds = manifest_.source.bounds;
+    problems_.require(manifest_.units == (config_.units ? config_.units : manifest_.source.units),
+                      "\"units\" are not those of \"config\" or the source");
+    if (config_.placement.crs) {
+      problems_.require(
+          manifest_.transform && config::fits_map(config_, bounds, *manifest_.transform),
+          "\"transform\" is not near that of \"config.placement\"");
+    } else if (says("/placement")) {
+      problems_.require(manifest_.transform == config::tileset_transform(config_, bounds),
+                        "\"transform\" is not that of \"config.placement\"");
+    }
+    if (says("/tileset/pixels")) {
+      problems_.require(manifest_.tileset_pixels == config_.tileset.pixels,
+                        "\"tileset.pixels\" are not those of \"config\"");
+    }
   }
-  problems.compare("licence", manifest.licence, config.licence);
-}
+
+  const storage::Manifest& manifest_;
+  const config::Config& config_;
+  const ManifestProblems& problems_;
+};
 
 /// The config is one that builds, and its values are written as a build writes them.
 void check_config(const VerifyJob& job, const ManifestProblems& problems) {
@@ -152,7 +194,7 @@ void check_config(const VerifyJob& job, const ManifestProblems& problems) {
     const config::Config config = exporting::config_of(manifest);
     const std::string wrong = first_difference(manifest.config, config::resolved_json(config), "");
     problems.require(wrong.empty(), fmt::format("\"config.{}\" is not what a build writes", wrong));
-    check_config_against_rest(manifest, config, problems);
+    ConfigAgreement(manifest, config, problems).check();
   } catch (const Error& error) {
     if (error.code() != ErrorCode::usage)
       throw;

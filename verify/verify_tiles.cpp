@@ -203,6 +203,45 @@ void check_parent_map(const VerifyJob& job, const PublishedTile& tile,
                    to_text(parent.node));
 }
 
+/// Sums over all tiles.
+struct TileTotals {
+  PartitionTotals partitions;
+  std::uint64_t ghosts = 0, border = 0;
+  std::size_t off_target = 0;  ///< tiles with fewer vertices than were asked for
+};
+
+void add_tile(const VerifyJob& job, const TileRecord& record, const TileMesh& mesh,
+              TileTotals& totals) {
+  if (job.tree().is_partition(record.node)) {
+    totals.partitions.copies += exporting::own_copy_count(mesh);
+    totals.partitions.unreferenced += unreferenced_count(mesh);
+  }
+  totals.ghosts += record.ghost_count;
+  totals.border += record.border_count;
+}
+
+/// Lets tiles be read ahead in the order in which they are verified.
+void will_read_all(const VerifyJob& job) {
+  std::vector<NodeId> nodes;
+  for (const TileRecord& record : job.reader.records())
+    nodes.push_back(record.node);
+  job.reader.will_read(nodes);
+}
+
+void tell_checks(const VerifyJob& job, const TileTotals& totals) {
+  job.checks.push_back(fmt::format(
+      "tiles: sizes, checksums and structure of {}; {} below the vertex count asked for",
+      job.reader.records().size() - job.tiles.unreadable_count(), totals.off_target));
+  if (const auto& textures = job.reader.manifest().textures) {
+    if (const std::string missing = images::missing_coder(*textures); !missing.empty())
+      job.checks.push_back("pictures: their heads alone, as " + missing);
+  }
+  job.checks.push_back(
+      fmt::format("borders: {} ghosts and {} border triangles compared with the neighbours' own",
+                  totals.ghosts, totals.border));
+  job.checks.push_back("every cut: each simplified tile compared with the image of its children");
+}
+
 }  // namespace
 
 ParentMaps make_parent_maps(const VerifyJob& job) {
@@ -253,10 +292,6 @@ void verify_alone(const VerifyJob& job, const TileRecord& record, const Publishe
 }
 
 void verify_tiles(const VerifyJob& job) {
-  const auto& records = job.reader.records();
-  std::uint64_t ghosts = 0, border = 0;
-  PartitionTotals totals;
-  std::size_t off_target = 0;
   ParentMaps maps = make_parent_maps(job);
   const auto has_texcoords = [&](NodeId node) { return job.reader.record(node).image_width > 0; };
   BorderPairs pairs(job.tree(), maps, has_texcoords, job.scratch, job.options.memory_budget / 8);
@@ -264,12 +299,10 @@ void verify_tiles(const VerifyJob& job) {
   std::optional<ObjectCheck> objects;
   if (job.reader.manifest().objects)
     objects.emplace(job, job.options.memory_budget / 8);
-  job.progress.stage("verify", records.size(), "tiles");
-  std::vector<NodeId> nodes;
-  for (const TileRecord& record : records)
-    nodes.push_back(record.node);
-  job.reader.will_read(nodes);
-  for (const TileRecord& record : records) {
+  job.progress.stage("verify", job.reader.records().size(), "tiles");
+  will_read_all(job);
+  TileTotals totals;
+  for (const TileRecord& record : job.reader.records()) {
     job.cancel.check();
     if (const auto tile = job.tiles.find(record.node)) {
       verify_alone(job, record, *tile);
@@ -277,19 +310,14 @@ void verify_tiles(const VerifyJob& job) {
       claims.add(*tile);
       if (objects)
         objects->add(*tile);
-      if (job.tree().is_partition(record.node)) {
-        totals.copies += exporting::own_copy_count(tile->mesh);
-        totals.unreferenced += unreferenced_count(tile->mesh);
-      }
-      ghosts += record.ghost_count;
-      border += record.border_count;
+      add_tile(job, record, tile->mesh, totals);
     }
-    if (record.own_count != record.target_count)
-      ++off_target;
+    totals.off_target += record.own_count != record.target_count ? 1 : 0;
     job.progress.advance(1);
   }
-  if (job.tiles.unreadable_count() == 0)
-    verify_vertex_counts(job, totals);
+  const auto are_all_read = [&] { return job.tiles.unreadable_count() == 0; };
+  if (are_all_read())
+    verify_vertex_counts(job, totals.partitions);
   pairs.finish([&](const NodePair& pair) {
     const auto level = static_cast<Level>(pair.level);
     explain_difference(job, {level, pair.low}, {level, pair.high});
@@ -297,19 +325,9 @@ void verify_tiles(const VerifyJob& job) {
   claims.finish([&](const WrongCopies& wrong) { tell_wrong_copies(job, wrong); });
   if (objects)
     objects->finish_tiles();
-  if (objects && job.tiles.unreadable_count() == 0)
+  if (objects && are_all_read())
     objects->finish();
-  job.checks.push_back(fmt::format(
-      "tiles: sizes, checksums and structure of {}; {} below the vertex count asked for",
-      records.size() - job.tiles.unreadable_count(), off_target));
-  if (const auto& textures = job.reader.manifest().textures) {
-    if (const std::string missing = images::missing_coder(*textures); !missing.empty())
-      job.checks.push_back("pictures: their heads alone, as " + missing);
-  }
-  job.checks.push_back(
-      fmt::format("borders: {} ghosts and {} border triangles compared with the neighbours' own",
-                  ghosts, border));
-  job.checks.push_back("every cut: each simplified tile compared with the image of its children");
+  tell_checks(job, totals);
 }
 
 }  // namespace meshhier::verifying
