@@ -79,18 +79,12 @@ ObjectTableShape read_table_shape(const Json& extension,
 }
 
 /// Counts are bounded by 2^32, so that no product or sum of sizes overflows 64 bits.
-TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const TileFormat& format,
-                     const std::string& name) {
-  const Json& extension =
-      require_extension(document, kTileExtension,
-                        tile_version(format.attributes, format.screen_colours,
-                                     format.normal_maps.has_value(), format.objects.has_value()),
-                        name);
+TileShape read_tile_counts(const Json& extension, const TileFormat& format,
+                           const std::string& name) {
   const auto count = [&](const char* key, std::uint64_t max = UINT32_MAX) {
     return require_count(extension, key, max, name);
   };
   TileShape shape;
-  shape.node = node;
   shape.own = count("ownCount", kMaxOwnVertices);
   shape.boundary = count("rimCount", shape.own);
   shape.ghosts = count("ghostCount");
@@ -105,23 +99,35 @@ TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const 
   shape.normal_maps = format.normal_maps;
   if (shape.is_shaded())
     shape.splits = count("splitCount");
-  if (shape.textures && shape.interior + shape.border > 0)
+  return shape;
+}
+
+/// Whether a tile has the part, which is the view of that number; -1 stands for none.
+bool has_part(const Json& extension, TilePart part) {
+  const char* key = key_of(part);
+  return extension.contains(key) && extension[key] != -1;
+}
+
+/// Reads the shapes of the picture and the normal map, as far as the tile has them.
+void read_picture_shapes(const Json& document, const Json& extension, bool is_partition,
+                         const std::string& name, TileShape& shape) {
+  const bool is_drawn = shape.interior + shape.border > 0;
+  if (shape.textures && is_drawn)
     shape.image =
         read_image_shape(document, extension, {"image", "imageWidth", "imageHeight"}, name);
-  const char* map = key_of(TilePart::normal_map);
-  if (shape.normal_maps && extension.contains(map) && extension[map] != -1) {
-    shape.normal_map =
-        read_image_shape(document, extension, {map, "normalMapWidth", "normalMapHeight"}, name);
-    shape.normal_map.alpha = AlphaMode::opaque;  // the material's is the picture's
-    if (tree.is_partition(node) || shape.interior + shape.border == 0)
-      throw Error(ErrorCode::corrupt, name + ": a normal map of a partition, or of no triangle");
-    if (shape.has_image() && !have_same_sides(shape.image, shape.normal_map))
-      throw Error(ErrorCode::corrupt, name + ": picture and normal map have different sides");
-  }
-  if (format.objects)
-    shape.objects = read_table_shape(extension, *format.objects, name);
-  if (node == tree.root())
-    shape.first_view = read_first_view(document, name);
+  if (!shape.normal_maps || !has_part(extension, TilePart::normal_map))
+    return;
+  shape.normal_map =
+      read_image_shape(document, extension,
+                       {key_of(TilePart::normal_map), "normalMapWidth", "normalMapHeight"}, name);
+  shape.normal_map.alpha = AlphaMode::opaque;  // the material's is the picture's
+  if (is_partition || !is_drawn)
+    throw Error(ErrorCode::corrupt, name + ": a normal map of a partition, or of no triangle");
+  if (shape.has_image() && !have_same_sides(shape.image, shape.normal_map))
+    throw Error(ErrorCode::corrupt, name + ": picture and normal map have different sides");
+}
+
+void require_vertices(const TileShape& shape, const std::string& name) {
   if (shape.own == 0)
     throw Error(ErrorCode::corrupt, name + ": a tile without vertices");
   if (shape.with_splits() > UINT32_MAX)
@@ -129,14 +135,28 @@ TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const 
                 fmt::format("{}: {} vertices, expected less than 2^32", name, shape.with_splits()));
   if (shape.splits > most_splits(shape.interior, shape.border))
     throw Error(ErrorCode::corrupt, name + ": more splits than corners of triangles");
+}
+
+TileShape read_shape(const Json& document, NodeId node, const Tree& tree, const TileFormat& format,
+                     const std::string& name) {
+  const Json& extension =
+      require_extension(document, kTileExtension,
+                        tile_version(format.attributes, format.screen_colours,
+                                     format.normal_maps.has_value(), format.objects.has_value()),
+                        name);
+  const bool is_partition = tree.is_partition(node);
+  TileShape shape = read_tile_counts(extension, format, name);
+  shape.node = node;
+  read_picture_shapes(document, extension, is_partition, name, shape);
+  if (format.objects)
+    shape.objects = read_table_shape(extension, *format.objects, name);
+  if (node == tree.root())
+    shape.first_view = read_first_view(document, name);
+  require_vertices(shape, name);
   const auto groups = groups_of(format.attributes);
-  for (std::size_t i = 0; tree.is_partition(node) && i < groups.size(); ++i) {
-    const char* key = key_of(groups[i].raw);
-    shape.raw[i] = groups[i].channels > 0 && extension.contains(key) && extension[key] != -1;
-  }
-  const char* key = key_of(TilePart::raw_values);
-  shape.raw_values =
-      !format.attributes.values.empty() && extension.contains(key) && extension[key] != -1;
+  for (std::size_t i = 0; is_partition && i < groups.size(); ++i)
+    shape.raw[i] = groups[i].channels > 0 && has_part(extension, groups[i].raw);
+  shape.raw_values = !format.attributes.values.empty() && has_part(extension, TilePart::raw_values);
   return shape;
 }
 
