@@ -295,25 +295,64 @@ std::string text_of(const Picture& picture, const std::string& cut, const Accoun
       map.empty() ? "on no map, in the model's coordinates" : "on " + map);
 }
 
+/// The picture's file, and the world file beside it if one is asked for.
+class PictureFiles {
+ public:
+  /// Throws Error(usage | exists | io) if they cannot be written.
+  PictureFiles(storage::FileSystem& files, const std::filesystem::path& hierarchy,
+               const DrawingOptions& options, const execution::CancelToken& cancel) {
+    const bool is_stream = storage::is_standard_output(files, options.output);
+    if (is_stream && options.has_world_file)
+      throw Error(ErrorCode::usage, "--world-file: standard output takes one file");
+    if (!is_stream)
+      storage::require_outside(files, options.output);
+    const auto open = [&](std::optional<storage::OutputFile>& file,
+                          const std::filesystem::path& path) {
+      file.emplace(
+          files, storage::OutputRequest{path, options.replace, {hierarchy, options.region.polygon}},
+          [&cancel] { cancel.check(); });
+    };
+    open(picture_, options.output);
+    if (options.has_world_file)
+      open(world_, world_file_path(options.output));
+  }
+
+  storage::File& picture() { return *picture_->file(); }
+
+  void publish(const PixelGrid& grid) {
+    std::vector<storage::OutputFile*> made{&*picture_};
+    if (world_) {
+      const std::string text = world_file_text(grid);
+      world_->file()->write_at(0, std::as_bytes(std::span(text)));
+      made.push_back(&*world_);
+    }
+    storage::publish_all(made);
+  }
+
+ private:
+  std::optional<storage::OutputFile> picture_, world_;
+};
+
+/// Returns the box of what is drawn; throws Error(usage) if that is nothing.
+BoundsD box_of_drawing(const HierarchyReader& reader, const Asked& asked,
+                       const DrawingOptions& options,
+                       const std::optional<exporting::Region>& region,
+                       const std::optional<exporting::Region>& kept) {
+  const BoundsD box = exporting::drawn_box(reader, asked.sheet.view, options.region, region,
+                                           kept ? &*kept->box : nullptr);
+  if (box.empty() && kept)
+    throw Error(ErrorCode::usage, "nothing lies behind the cut: all would be taken away");
+  if (box.empty())
+    exporting::fail_empty(reader, options.region);
+  return box;
+}
+
 }  // namespace
 
 std::string draw_picture(storage::FileSystem& files, const std::filesystem::path& hierarchy,
                          const DrawingOptions& options, execution::Progress& progress,
                          const execution::CancelToken& cancel) {
-  const bool is_stream = storage::is_standard_output(files, options.output);
-  if (is_stream && options.has_world_file)
-    throw Error(ErrorCode::usage, "--world-file: standard output takes one file");
-  if (!is_stream)
-    storage::require_outside(files, options.output);
-  const auto check = [&cancel] { cancel.check(); };
-  const auto request = [&](std::filesystem::path path) {
-    return storage::OutputRequest{
-        std::move(path), options.replace, {hierarchy, options.region.polygon}};
-  };
-  storage::OutputFile output(files, request(options.output), check);
-  std::optional<storage::OutputFile> world;
-  if (options.has_world_file)
-    world.emplace(files, request(world_file_path(options.output)), check);
+  PictureFiles made(files, hierarchy, options, cancel);
   const storage::HierarchyFiles place(files, hierarchy);
   const HierarchyReader reader(place.files(), hierarchy);
   exporting::require_surface(reader, "a drawing");
@@ -323,12 +362,7 @@ std::string draw_picture(storage::FileSystem& files, const std::filesystem::path
   if (options.region.is_any())
     region = exporting::region_of(files, reader, options.region, cancel);
   std::optional<exporting::Region> kept = region_kept(asked);
-  const BoundsD box = exporting::drawn_box(reader, asked.sheet.view, options.region, region,
-                                           kept ? &*kept->box : nullptr);
-  if (box.empty() && kept)
-    throw Error(ErrorCode::usage, "nothing lies behind the cut: all would be taken away");
-  if (box.empty())
-    exporting::fail_empty(reader, options.region);
+  const BoundsD box = box_of_drawing(reader, asked, options, region, kept);
   Paper paper = paper_for(box, asked.unit, options.paper);
   const exporting::PlanView view{.frame = asked.sheet.view,
                                  .grid = grid_of(paper, options.dots_per_inch),
@@ -342,18 +376,12 @@ std::string draw_picture(storage::FileSystem& files, const std::filesystem::path
                         levels_of(asked, box.min.z, box.max.z),
                         std::move(kept),
                         std::move(paper)};
-  const Account account = draw_windows(picture, *output.file(), progress);
+  const Account account = draw_windows(picture, made.picture(), progress);
   if (account.covered == 0)
     throw Error(ErrorCode::usage,
                 "nothing is seen: the surface covers the middle of no pixel; give a larger scale "
                 "or another view");
-  std::vector<storage::OutputFile*> made{&output};
-  if (world) {
-    const std::string text = world_file_text(view.grid);
-    world->file()->write_at(0, std::as_bytes(std::span(text)));
-    made.push_back(&*world);
-  }
-  storage::publish_all(made);
+  made.publish(view.grid);
   return text_of(picture, cut.name, account);
 }
 

@@ -428,42 +428,39 @@ void put_chunk_head(ByteStream& to, std::uint64_t bytes, std::string_view type) 
   to.put(type);
 }
 
-}  // namespace
-
-std::string write_glb(const PartsJob& job, const ExportedParts& parts) {
-  job.progress.stage("export", 2 * parts.count, "tiles");
-  storage::TileFormat format = job.reader.tile_format();
-  format.frame.origin = job.reader.manifest().origin;  // no tileset is around it
-  std::vector<PartFacts> facts;
-  std::vector<std::size_t> shown;  // parts that draw something
-  std::optional<GlbObjects> objects;
-  if (job.reader.manifest().objects)
-    objects.emplace(job);
+/// What a first look at all parts tells.
+struct GlbContent {
+  std::vector<std::size_t> shown;  ///< parts that draw something
+  std::vector<PartFacts> facts;    ///< of these
   std::uint64_t vertices = 0, triangles = 0;
+};
+
+/// Throws Error(usage) if no part draws anything. Adds the parts' objects.
+GlbContent look_at(const PartsJob& job, const ExportedParts& parts, GlbObjects* objects) {
+  GlbContent content;
   for (std::size_t i = 0; i < parts.count; ++i) {
     job.cancel.check();
     const CutPart loaded = parts.load(i);
     PartFacts part = facts_of(loaded);
     if (part.triangles > 0) {
-      part.objects = objects ? objects->add(loaded) : 0;
-      facts.push_back(part);
-      shown.push_back(i);
+      part.objects = objects != nullptr ? objects->add(loaded) : 0;
+      content.facts.push_back(part);
+      content.shown.push_back(i);
     }
-    vertices += part.vertices;
-    triangles += part.triangles;
+    content.vertices += part.vertices;
+    content.triangles += part.triangles;
     job.progress.advance(1);
   }
-  if (shown.empty())
+  if (content.shown.empty())
     throw Error(ErrorCode::usage, "there are no triangles to export: a GLB shows nothing else");
+  return content;
+}
 
-  if (objects)
-    objects->make_table();
-  const GlbObjects* const table = objects ? &*objects : nullptr;
-  const GlbText text(format, facts, table);
+/// Writes all that stands before the parts. Throws Error(usage) if the file would be too large.
+void put_head(ByteStream& to, const GlbText& text) {
   std::uint64_t json_bytes = 0;
   text.write([&](std::string_view piece) { json_bytes += piece.size(); });
-  const std::uint64_t bin_bytes = text.bin_bytes();
-  const std::uint64_t all = storage::glb_bytes(json_bytes, bin_bytes);
+  const std::uint64_t all = storage::glb_bytes(json_bytes, text.bin_bytes());
   if (all > std::numeric_limits<std::uint32_t>::max()) {
     throw Error(
         ErrorCode::usage,
@@ -471,15 +468,32 @@ std::string write_glb(const PartsJob& job, const ExportedParts& parts) {
                     "a coarser level",
                     all));
   }
+  to.put("glTF");
+  put_chunk_head(to, 2, std::string_view());
+  put_chunk_head(to, all, std::string_view());
+  put_chunk_head(to, storage::aligned4(json_bytes), "JSON");
+  text.write([&](std::string_view piece) { to.put(piece); });
+  to.put(std::string(storage::aligned4(json_bytes) - json_bytes, ' '));
+  put_chunk_head(to, text.bin_bytes(), std::string_view("BIN\0", 4));
+}
+
+}  // namespace
+
+std::string write_glb(const PartsJob& job, const ExportedParts& parts) {
+  job.progress.stage("export", 2 * parts.count, "tiles");
+  storage::TileFormat format = job.reader.tile_format();
+  format.frame.origin = job.reader.manifest().origin;  // no tileset is around it
+  std::optional<GlbObjects> objects;
+  if (job.reader.manifest().objects)
+    objects.emplace(job);
+  GlbObjects* const table = objects ? &*objects : nullptr;
+  const GlbContent content = look_at(job, parts, table);
+  if (table != nullptr)
+    table->make_table();
+  const GlbText text(format, content.facts, table);
   ByteStream out(*job.output.file());
-  out.put("glTF");
-  put_chunk_head(out, 2, std::string_view());
-  put_chunk_head(out, all, std::string_view());
-  put_chunk_head(out, storage::aligned4(json_bytes), "JSON");
-  text.write([&](std::string_view piece) { out.put(piece); });
-  out.put(std::string(storage::aligned4(json_bytes) - json_bytes, ' '));
-  put_chunk_head(out, bin_bytes, std::string_view("BIN\0", 4));
-  for (const std::size_t i : shown) {
+  put_head(out, text);
+  for (const std::size_t i : content.shown) {
     job.cancel.check();
     PartBytes(format, parts.load(i), table).write(out);
     job.progress.advance(1);
@@ -488,11 +502,12 @@ std::string write_glb(const PartsJob& job, const ExportedParts& parts) {
     out.put(std::vector<std::byte>(text.table_padding()));
     table->write(out);
   }
-  job.progress.advance(parts.count - shown.size());
+  job.progress.advance(parts.count - content.shown.size());
   out.flush();
   job.output.publish();
-  return fmt::format("{}, {}{}", counted(vertices, "vertices"), counted(triangles, "triangles"),
-                     format.textures ? ", " + counted(shown.size(), "pictures") : "");
+  return fmt::format("{}, {}{}", counted(content.vertices, "vertices"),
+                     counted(content.triangles, "triangles"),
+                     format.textures ? ", " + counted(content.shown.size(), "pictures") : "");
 }
 
 }  // namespace meshhier::exporting

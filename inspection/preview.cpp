@@ -243,31 +243,46 @@ std::string text_of(const HierarchyReader& reader, const Pictured& shown, bool i
                      counted(triangles, "triangles"));
 }
 
-}  // namespace
-
-std::string make_picture(storage::FileSystem& files, const std::filesystem::path& hierarchy,
-                         const PreviewOptions& options, execution::Progress& progress,
-                         const execution::CancelToken& cancel) {
+storage::OutputRequest request_of(const PreviewOptions& options,
+                                  const std::filesystem::path& hierarchy) {
   storage::OutputRequest request{options.output, options.replace, {hierarchy}};
   if (options.selection) {
     if (const auto* cut = std::get_if<std::filesystem::path>(&*options.selection))
       request.inputs.push_back(*cut);
   }
   request.inputs.push_back(options.region.polygon);
+  return request;
+}
+
+/// Returns what is shown of the model: what the options say, else the objects that the view shows;
+/// nothing if it is all.
+std::optional<exporting::Region> region_shown(storage::FileSystem& files,
+                                              const HierarchyReader& reader,
+                                              const PreviewOptions& options, const ModelView& view,
+                                              const execution::CancelToken& cancel) {
+  exporting::RegionRequest request = options.region;
+  if (auto shown = shown_objects(reader, view, cancel); shown && !options.region.is_any())
+    request.objects.numbers = std::move(shown);
+  if (!request.is_any())
+    return std::nullopt;
+  return region_of(files, reader, request, cancel);
+}
+
+}  // namespace
+
+std::string make_picture(storage::FileSystem& files, const std::filesystem::path& hierarchy,
+                         const PreviewOptions& options, execution::Progress& progress,
+                         const execution::CancelToken& cancel) {
   require_room(options);
   const storage::HierarchyFiles place(files, hierarchy);
   const HierarchyReader reader(place.files(), hierarchy);
   if (!storage::is_standard_output(files, options.output))
     storage::require_outside(files, options.output);
-  storage::OutputFile output(files, request, [&] { cancel.check(); });
+  storage::OutputFile output(files, request_of(options, hierarchy), [&] { cancel.check(); });
 
   const DrawnView drawn = drawn_view(reader, options, progress);
-  exporting::RegionRequest request_region = options.region;
-  if (auto shown = shown_objects(reader, drawn.view, cancel); shown && !options.region.is_any())
-    request_region.objects.numbers = std::move(shown);
-  std::optional<exporting::Region> region;
-  if (request_region.is_any())
-    region = region_of(files, reader, request_region, cancel);
+  const std::optional<exporting::Region> region =
+      region_shown(files, reader, options, drawn.view, cancel);
   const std::uint64_t cache_bytes = options.memory_budget / 8;
   TileDrawing drawing(reader, options, drawn, cancel);
   if (options.region.is_any()) {
