@@ -96,7 +96,6 @@ std::optional<BuildReport> build_if_due(const config::Config& asked, const Build
   check_room(input, plan, config, files);
 
   storage::WorkDirectory work(files, output, options.force);
-  work.keep(files.exists(storage::journal_path(work.path())));  // of a build that was stopped
   if (!options.is_due())
     return std::nullopt;
   return build_in(work, input, std::move(plan), pool, config, options, environment);
@@ -109,10 +108,8 @@ BuildReport build_in(storage::WorkDirectory& work, importing::MeshInput& input,
                      const config::Config& config, const BuildOptions& options,
                      const BuildEnvironment& environment) {
   storage::FileSystem& files = environment.files;
-  if (options.restart == Restart::always) {
+  if (options.restart == Restart::always)
     work.clear();
-    work.keep(false);
-  }
   claim_room(work, input, plan, config, files, pool.scratch_use());
   const DropAtEnd drop{input};
   StageMeter meter({environment.progress, files.counters(), pool.scratch_use()});
@@ -156,7 +153,7 @@ BuildReport run_stages(importing::MeshInput& input, storage::WorkDirectory& work
     read_mesh(input, workshop, context);
   }
   input.drop();
-  work.keep(true);
+  work.keep(true);  // the journal has the input
 
   const std::uint64_t before = written_for_good(files, use);
   DiskNeed predicted = context.plan.disk;

@@ -287,8 +287,7 @@ std::string write_progressive(storage::FileSystem& files, const fs::path& hierar
       plan_progressive(reader, sector, options.memory_budget,
                        static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
   storage::WorkDirectory work(files, output, options.replace);
-  if (files.exists(storage::journal_path(work.path()))) {
-    work.keep(true);
+  if (work.is_kept()) {
     throw Error(ErrorCode::other_work,
                 fmt::format("{} holds what a stopped build has done; go on with it, or remove it "
                             "(meshhier clean --remove {})",

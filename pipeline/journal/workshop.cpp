@@ -102,8 +102,7 @@ OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& i
   };
   const bool is_new = !files.exists(storage::journal_path(work.path()));
   if (is_new)
-    work.clear();      // work that was not noted is of no use
-  work.keep(!is_new);  // it may be of another build
+    work.clear();  // work that was not noted is of no use
   try {
     make();
   } catch (const Error& error) {
@@ -112,7 +111,6 @@ OpenWorkshop open_workshop(storage::WorkDirectory& work, importing::MeshInput& i
     begin_anew("a stopped build of another config or input left its work: this one began anew");
   }
   const BuildJournal& journal = open.workshop->journal;
-  work.keep(journal.source().has_value());
   if (!journal.source()) {
     if (!is_new && open.found.empty())
       begin_anew("");

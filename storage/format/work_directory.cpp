@@ -170,6 +170,7 @@ WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
                 fmt::format("another build of {} is at work", output_.path.string()));
   }
   restore_journal();
+  kept_ = files_.exists(journal_path(path_));
 }
 
 WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace, fs::path shared)
@@ -223,6 +224,7 @@ void WorkDirectory::clear() {
       files_.remove_all(file);
   }
   files_.remove_all(built());
+  kept_ = false;
 }
 
 /// Syncs what gets the name: an archive without the files that were packed into it.

@@ -75,9 +75,11 @@ class WorkDirectory {
   std::filesystem::path built() const;   ///< the hierarchy to be, in path()
   std::filesystem::path packed() const;  ///< its archive to be, in path()
 
-  /// Removes all that is in it, but for an imported mesh with its objects, and the lock.
+  /// Removes all that is in it, but for an imported mesh with its objects, and the lock: nothing is
+  /// left to be kept.
   void clear();
-  /// Says whether its content stays when the object goes without having been published.
+  /// Says whether its content stays when the object goes without having been published. What a
+  /// stopped build left stays until more is said: it is known by its journal.
   void keep(bool kept) { kept_ = kept; }
   bool is_kept() const { return kept_; }
 
