@@ -2,7 +2,7 @@
 #include "bench/chart_atlas.h"
 
 #include "bench/base_surface.h"
-#include "tests/support/usage_error.h"
+#include "tests/support/error_message.h"
 
 #include <algorithm>
 #include <cstddef>

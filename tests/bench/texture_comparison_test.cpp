@@ -7,9 +7,9 @@
 #include "render/camera.h"
 #include "render/directions.h"
 #include "render/shade.h"
+#include "tests/support/error_message.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sample_texture.h"
-#include "tests/support/usage_error.h"
 
 #include <cmath>
 #include <cstdint>

@@ -4,8 +4,8 @@
 #include "bench/textured_files.h"
 #include "images/image_codec.h"
 #include "tests/bench/collected.h"
+#include "tests/support/error_message.h"
 #include "tests/support/memory_files.h"
-#include "tests/support/usage_error.h"
 
 #include <algorithm>
 #include <array>

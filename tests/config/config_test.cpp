@@ -6,6 +6,7 @@
 #include "config/suggest.h"
 #include "config/view_config.h"
 #include "execution/size_text.h"
+#include "tests/support/error_message.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -46,14 +47,9 @@ std::string with(const std::string& keys) {
 
 /// The message of the usage error that parsing must end with.
 std::string refusal(const std::string& text, const Overrides& overrides = {}) {
-  try {
-    parse(text, overrides);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "accepted: " << text;
-  return "";
+  const std::string message = tests::usage_error([&] { parse(text, overrides); });
+  EXPECT_NE(message, "") << "accepted: " << text;
+  return message;
 }
 
 // ---- objects

@@ -1,6 +1,6 @@
 #include "config/map_file.h"
 
-#include "base/error.h"
+#include "tests/support/error_message.h"
 
 #include <array>
 #include <optional>
@@ -16,14 +16,9 @@ using testing::HasSubstr;
 using Numbers = std::array<double, 3>;
 
 std::string map_refusal(const std::string& text) {
-  try {
-    parse_map_file(text);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "accepted: " << text;
-  return "";
+  const std::string message = tests::usage_error([&] { parse_map_file(text); });
+  EXPECT_NE(message, "") << "accepted: " << text;
+  return message;
 }
 
 void expect_map(const std::string& text, const std::optional<std::string>& crs,

@@ -1,7 +1,7 @@
 #include "config/map_places.h"
 
-#include "base/error.h"
 #include "config/placement.h"
+#include "tests/support/error_message.h"
 
 #include <string>
 
@@ -56,13 +56,7 @@ TEST(MapPlaces, OfWhatStandsOnTheGlobe) {
 
 TEST(MapPlaces, WhatStandsNowhereHasNone) {
   const auto refused = [](const Config& config, const std::string& crs) -> std::string {
-    try {
-      places_of(config, crs);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::usage);
-      return error.what();
-    }
-    return "";
+    return tests::usage_error([&] { places_of(config, crs); });
   };
   EXPECT_THAT(refused(on_map(R"("up": "z")"), "EPSG:4326"), HasSubstr("stands on no map"));
   const Config config = on_map(R"("up": "z", "placement": {"crs": "EPSG:32633"})");

@@ -1,7 +1,7 @@
 #include "config/placement.h"
 
-#include "base/error.h"
 #include "support/memory_files.h"
+#include "tests/support/error_message.h"
 
 #include <array>
 #include <string>
@@ -40,14 +40,9 @@ class PlacementTest : public testing::Test {
   }
 
   std::string refusal(const std::string& placement) {
-    try {
-      whole(placement);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::usage) << error.what();
-      return error.what();
-    }
-    ADD_FAILURE() << "accepted: " << placement;
-    return "";
+    const std::string message = tests::usage_error([&] { whole(placement); });
+    EXPECT_NE(message, "") << "accepted: " << placement;
+    return message;
   }
 
   tests::MemoryFiles files_;
@@ -257,14 +252,9 @@ TEST(PlacementUnits, AreNamed) {
 // ---- keys that exclude or need each other
 
 std::string key_refusal(const std::string& placement) {
-  try {
-    placed(placement);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "accepted: " << placement;
-  return "";
+  const std::string message = tests::usage_error([&] { placed(placement); });
+  EXPECT_NE(message, "") << "accepted: " << placement;
+  return message;
 }
 
 TEST(PlacementKeys, ThereIsOneWayToPlaceAModel) {

@@ -1,9 +1,9 @@
 #include "drawing/paper.h"
 
-#include "base/error.h"
 #include "drawing/levels.h"
 #include "drawing/stroke_font.h"
 #include "drawing/strokes.h"
+#include "tests/support/error_message.h"
 
 #include <array>
 #include <cstdint>
@@ -24,13 +24,7 @@ constexpr SheetUnit kMetres{1, "m"};
 
 template <class Make>
 std::string fault_of(const Make& make) {
-  try {
-    make();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage);
-    return error.what();
-  }
-  return "";
+  return tests::usage_error(make);
 }
 
 TEST(PaperTest, LengthsAreRound) {

@@ -5,9 +5,9 @@
 #include "export/node_cache.h"
 #include "export/random_cut.h"
 #include "hierarchy/cut.h"
+#include "tests/support/error_message.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
-#include "tests/support/usage_error.h"
 
 #include <algorithm>
 #include <array>

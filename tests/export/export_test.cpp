@@ -7,6 +7,7 @@
 #include "hierarchy/cut.h"
 #include "mesh_io/mesh_source.h"
 #include "storage/format/layout.h"
+#include "tests/support/error_message.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_copies.h"
@@ -500,13 +501,7 @@ TEST_F(ExportBoxTest, NodesHavePiecesToo) {
 TEST_F(ExportBoxTest, WhatIsNoneIsTold) {
   publish(tests::sphere(100), {3, 10, false, true, {}});
   const auto said = [&](const ExportSelection& selection, const BoundsD& box) -> std::string {
-    try {
-      piece(selection, box, false);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::usage);
-      return error.what();
-    }
-    return "";
+    return tests::usage_error([&] { piece(selection, box, false); });
   };
   EXPECT_THAT(said(Level{0}, {{5, 5, 5}, {6, 6, 6}}), HasSubstr("no triangle lies in the box"));
   EXPECT_THAT(said(Level{0}, {{1, 0, 0}, {0, 1, 1}}), HasSubstr("the box is none"));

@@ -1,6 +1,6 @@
 #include "export/object_condition.h"
 
-#include "base/error.h"
+#include "tests/support/error_message.h"
 
 #include <array>
 #include <string>
@@ -29,13 +29,7 @@ bool is_met(const std::string& text, const ObjectRow& row = kHouse) {
 
 std::string fault(const std::string& text,
                   const std::vector<ObjectProperty>& properties = kProperties) {
-  try {
-    const ObjectCondition condition(text, properties);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage);
-    return error.what();
-  }
-  return "";
+  return tests::usage_error([&] { const ObjectCondition condition(text, properties); });
 }
 
 TEST(ObjectConditionTest, ValuesAreCompared) {

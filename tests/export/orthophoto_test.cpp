@@ -7,6 +7,7 @@
 #include "export/raster_pyramid.h"
 #include "images/tiff_file.h"
 #include "pipeline/build.h"
+#include "tests/support/error_message.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/meshes.h"
 #include "tests/support/quick_config.h"
@@ -117,13 +118,7 @@ class OrthophotoTest : public testing::Test {
     return export_rasters(*files_, path("a.hier"), options, progress, execution::CancelToken());
   }
   std::string refusal(RasterOptions options, ErrorCode code) {
-    try {
-      draw(std::move(options));
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), code);
-      return error.what();
-    }
-    return "";
+    return tests::error_message(code, [&] { draw(std::move(options)); });
   }
   RasterOptions heights(double pixel, PlanPoint corner = {}) const {
     RasterOptions options;

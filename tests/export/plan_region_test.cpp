@@ -5,6 +5,7 @@
 #include "export/geojson.h"
 #include "support/memory_files.h"
 #include "support/taken_memory.h"
+#include "tests/support/error_message.h"
 
 #include <algorithm>
 #include <array>
@@ -276,13 +277,7 @@ TEST(GeoJson, WhatIsNoneIsTold) {
   tests::MemoryFiles files;
   const auto refused = [&](const std::string& text) -> std::string {
     files.put("a.geojson", text);
-    try {
-      read_polygons(files, "a.geojson");
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input);
-      return error.what();
-    }
-    return "";
+    return tests::error_message(ErrorCode::input, [&] { read_polygons(files, "a.geojson"); });
   };
   EXPECT_THAT(refused("polygon (0 0)"), HasSubstr("a.geojson: is WKT"));
   EXPECT_THAT(refused("(0 0, 1 0)"), HasSubstr("a.geojson: is not valid JSON"));
@@ -314,13 +309,7 @@ TEST(GeoJson, OtherFormatsAreNamedWithWhatToDo) {
       R"({"type": "Polygon", "coordinates": [[[0, 0], [1, 0], [1, 1], [0, 0]]]})";
   const auto refused = [&](const std::string& text) -> std::string {
     files.put("a", text);
-    try {
-      read_polygons(files, "a");
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input);
-      return error.what();
-    }
-    return "";
+    return tests::error_message(ErrorCode::input, [&] { read_polygons(files, "a"); });
   };
   for (const char* wkt : {"POLYGON ((0 0, 1 0, 1 1, 0 0))", " multipolygon (((0 0, 1 0)))",
                           "SRID=4326;POLYGON((0 0, 1 0))", "\xef\xbb\xbfPolygon Z ((0 0 0))",

@@ -1,6 +1,7 @@
 #include "geodesy/map_projection.h"
 
 #include "base/error.h"
+#include "tests/support/error_message.h"
 
 #include <cstdlib>
 #include <string>
@@ -24,14 +25,9 @@ MapProjection settled(const std::string& crs, Vec3d at) {
 
 /// The message of the usage error that a CRS must end with.
 std::string refusal(const std::string& crs) {
-  try {
-    const MapProjection projection(crs);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "accepted: " << crs;
-  return "";
+  const std::string message = tests::usage_error([&] { const MapProjection projection(crs); });
+  EXPECT_NE(message, "") << "accepted: " << crs;
+  return message;
 }
 
 void expect_near(Vec3d found, Vec3d expected, double tolerance) {

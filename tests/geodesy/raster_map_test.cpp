@@ -1,6 +1,7 @@
 #include "geodesy/raster_map.h"
 
 #include "base/error.h"
+#include "tests/support/error_message.h"
 
 #include <string>
 #include <vector>
@@ -25,13 +26,7 @@ struct SampleKeys {
     return raster_map_of({all, doubles, text});
   }
   std::string refusal() const {
-    try {
-      parse();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input);
-      return error.what();
-    }
-    return "";
+    return tests::error_message(ErrorCode::input, [&] { parse(); });
   }
 };
 

@@ -1,9 +1,9 @@
 #include "hierarchy/cut.h"
 
 #include "base/error.h"
+#include "tests/support/error_message.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
-#include "tests/support/usage_error.h"
 
 #include <algorithm>
 #include <array>

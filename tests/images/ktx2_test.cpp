@@ -6,6 +6,7 @@
 #include "storage/io/own_program.h"
 #include "storage/io/process.h"
 #include "tests/images/samples.h"
+#include "tests/support/error_message.h"
 
 #include <cmath>
 #include <cstdlib>
@@ -228,13 +229,8 @@ class OwnCoder {
 };
 
 std::string coding_failure() {
-  try {
-    encode_image(smooth(4, 4, 3), ImageFormat::ktx2, 90);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::io);
-    return error.what();
-  }
-  return {};
+  return tests::error_message(ErrorCode::io,
+                              [&] { encode_image(smooth(4, 4, 3), ImageFormat::ktx2, 90); });
 }
 
 TEST_F(Ktx2Test, ACoderThatIsKilledIsReplaced) {

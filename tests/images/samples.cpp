@@ -1,6 +1,7 @@
 #include "tests/images/samples.h"
 
 #include "base/error.h"
+#include "tests/support/error_message.h"
 
 #include <algorithm>
 #include <array>
@@ -205,13 +206,7 @@ Image decoded(const Bytes& bytes) {
 }
 
 std::string refusal(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::input);
-    return error.what();
-  }
-  return "";
+  return tests::error_message(ErrorCode::input, call);
 }
 
 int difference(const Image& a, const Image& b) {

@@ -2,6 +2,7 @@
 
 #include "support/memory_files.h"
 #include "support/tiff_writer.h"
+#include "tests/support/error_message.h"
 
 #include <array>
 #include <memory>
@@ -56,13 +57,7 @@ void write_sample(tests::MemoryFiles& files, tests::TiffWriter::Form form) {
 
 template <class Work>
 std::string tiff_message(const Work& work, ErrorCode code = ErrorCode::input) {
-  try {
-    work();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), code);
-    return error.what();
-  }
-  return "";
+  return tests::error_message(code, work);
 }
 
 class TiffForms : public testing::TestWithParam<tests::TiffWriter::Form> {};

@@ -7,6 +7,7 @@
 #include "storage/format/tile_glb.h"
 #include "support/gltf_builder.h"
 #include "tests/gltf/sample_hierarchy.h"
+#include "tests/support/error_message.h"
 #include "tests/support/gzip.h"
 #include "tests/support/memory_files.h"
 
@@ -55,13 +56,7 @@ class GltfImportTest : public testing::Test {
     return failure("a.glb", code);
   }
   std::string failure(const std::string& name, ErrorCode code = ErrorCode::input) {
-    try {
-      import(name);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), code) << error.what();
-      return error.what();
-    }
-    return {};
+    return tests::error_message(code, [&] { import(name); });
   }
 
   tests::MemoryFiles files_;

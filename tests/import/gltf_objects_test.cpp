@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "import/imported.h"
 #include "support/gltf_builder.h"
+#include "tests/support/error_message.h"
 #include "tests/support/memory_files.h"
 
 #include <filesystem>
@@ -58,13 +59,7 @@ class GltfObjectsTest : public testing::Test {
     return tests::import_files(files_, fs::path("w/a.glb"), asking(source));
   }
   std::string failure(const GltfBuilder& gltf, ObjectSource source = ObjectSource::feature) {
-    try {
-      import(gltf, source);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input);
-      return error.what();
-    }
-    return {};
+    return tests::error_message(ErrorCode::input, [&] { import(gltf, source); });
   }
   Imported import_tiles(const std::vector<std::string>& tiles,
                         ObjectSource from = ObjectSource::evident) {
@@ -424,16 +419,12 @@ TEST_F(GltfObjectsTest, BatchTablesThatLie) {
               {{"POSITION", gltf.accessor(kPair, "VEC3")},
                {"_BATCHID", gltf.accessor(std::vector<float>{0, 0, 0, 9, 9, 9}, "SCALAR")}}}});
   const auto failure_of = [&](const std::string& json) -> std::string {
-    try {
+    return tests::error_message(ErrorCode::input, [&] {
       const std::string tile = batched_tile(gltf.glb(), json, "12345678");
       const Imported unasked = import_tiles({tile});
       EXPECT_EQ(unasked.count(std::string(kUnreadTables)), 1U) << "nobody asked for it";
       import_tiles({tile}, ObjectSource::feature);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input);
-      return error.what();
-    }
-    return {};
+    });
   };
   EXPECT_THAT(failure_of(R"({"h":{"byteOffset":9,"componentType":"FLOAT","type":"SCALAR"}})"),
               HasSubstr("byteOffset"));

@@ -3,6 +3,7 @@
 #include "import/imported.h"
 #include "mesh_io/tile_volume.h"
 #include "support/gltf_builder.h"
+#include "tests/support/error_message.h"
 #include "tests/support/gzip.h"
 #include "tests/support/memory_files.h"
 
@@ -117,13 +118,7 @@ class ImplicitTilesTest : public testing::Test {
     return all;
   }
   std::string failure() {
-    try {
-      import();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input) << error.what();
-      return error.what();
-    }
-    return {};
+    return tests::error_message(ErrorCode::input, [&] { import(); });
   }
 
   tests::MemoryFiles files_;

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "import/imported.h"
+#include "tests/support/error_message.h"
 #include "tests/support/memory_files.h"
 
 #include <filesystem>
@@ -23,13 +24,7 @@ class ImportTest : public testing::Test {
   }
   /// The message of the Error(input) that the import of a file throws; empty if there is none.
   std::string failure_of_file(const std::string& name) {
-    try {
-      import_file(name);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input);
-      return error.what();
-    }
-    return {};
+    return tests::error_message(ErrorCode::input, [&] { import_file(name); });
   }
 
   MemoryFiles files_;

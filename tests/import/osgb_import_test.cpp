@@ -8,6 +8,7 @@
 #include "mesh_io/osgb_file.h"
 #include "mesh_io/osgb_tiles.h"
 #include "storage/io/file.h"
+#include "tests/support/error_message.h"
 #include "tests/support/gzip.h"
 #include "tests/support/share.h"
 
@@ -120,13 +121,7 @@ class Osgb : public testing::Test {
     return tests::import_files(*files_, path, {.folder = folder_});
   }
   std::string failure(const fs::path& path) const {
-    try {
-      import(path);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input) << error.what();
-      return error.what();
-    }
-    return "";
+    return tests::error_message(ErrorCode::input, [&] { import(path); });
   }
   /// Replaces text of a file by other text of the same length.
   static void replace(const fs::path& path, const std::string& from, const std::string& to) {

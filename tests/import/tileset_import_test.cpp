@@ -7,6 +7,7 @@
 #include "storage/io/forwarding_files.h"
 #include "storage/io/zip_files.h"
 #include "support/gltf_builder.h"
+#include "tests/support/error_message.h"
 #include "tests/support/gzip.h"
 #include "tests/support/memory_files.h"
 #include "tests/support/sample_texture.h"
@@ -105,13 +106,8 @@ class TilesetImportTest : public testing::Test {
     return failure();
   }
   std::string failure() {
-    try {
-      tests::import_files(files_, fs::path("w/tileset.json"));
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::input) << error.what();
-      return error.what();
-    }
-    return {};
+    return tests::error_message(ErrorCode::input,
+                                [&] { tests::import_files(files_, fs::path("w/tileset.json")); });
   }
   config::Config framed(const std::string& more = "") {
     return config::with_input_frame(
@@ -716,13 +712,7 @@ TEST_F(TilesetImportTest, WhatArchivesHoldBesideTheirDirectoryDoesNotCount) {
 TEST_F(TilesetImportTest, ArchivesAndFoldersWithoutOneTilesetAreTold) {
   const auto failure_of = [&](const char* path, ErrorCode code) {
     storage::ZipFiles zip(files_);
-    try {
-      tests::import_files(zip, fs::path(path));
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), code) << error.what();
-      return std::string(error.what());
-    }
-    return std::string();
+    return tests::error_message(code, [&] { tests::import_files(zip, fs::path(path)); });
   };
   const std::string tileset = tileset_of(tile_of("0.glb"));
   put("none.3tz", tests::zip_of({{"0.glb", "g"}}));

@@ -4,6 +4,7 @@
 #include "import/imported.h"
 #include "storage/format/meshopt_codec.h"
 #include "support/gltf_builder.h"
+#include "tests/support/error_message.h"
 #include "tests/support/memory_files.h"
 
 #include <cmath>
@@ -40,13 +41,7 @@ class GltfCodecsTest : public testing::Test {
   }
   std::string failure(const GltfBuilder& gltf, ErrorCode code = ErrorCode::input,
                       bool tight = false) {
-    try {
-      import(gltf, tight);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), code) << error.what();
-      return error.what();
-    }
-    return {};
+    return tests::error_message(code, [&] { import(gltf, tight); });
   }
   void expect_square(const Imported& mesh) {
     ASSERT_EQ(mesh.positions.size(), 4U);

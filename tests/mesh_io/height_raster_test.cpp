@@ -4,6 +4,7 @@
 #include "mesh_io/mosaic.h"
 #include "support/gzip.h"
 #include "support/sample_tiff.h"
+#include "tests/support/error_message.h"
 
 #include <cmath>
 #include <limits>
@@ -45,13 +46,8 @@ std::vector<double> all_heights(const Mosaic& mosaic) {
 
 std::string raster_refusal(MemoryFiles& files,
                            const std::vector<std::filesystem::path>& paths = {kHeights}) {
-  try {
-    all_heights(Mosaic(files, paths));
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::input);
-    return error.what();
-  }
-  return "";
+  return meshhier::tests::error_message(ErrorCode::input,
+                                        [&] { all_heights(Mosaic(files, paths)); });
 }
 
 template <class T>

@@ -1,6 +1,6 @@
 #include "mesh_io/output_name.h"
 
-#include "base/error.h"
+#include "tests/support/error_message.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,13 +9,7 @@ namespace meshhier::mesh_io::tests {
 namespace {
 
 std::string refusal_of_name(std::string_view name) {
-  try {
-    require_true_ending(name, {".ply"}, "name it .ply");
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::usage);
-    return error.what();
-  }
-  return "";
+  return meshhier::tests::usage_error([&] { require_true_ending(name, {".ply"}, "name it .ply"); });
 }
 
 TEST(OutputNameTest, OtherFormatsEndingsAreRefused) {

@@ -1,6 +1,7 @@
 #include "mesh_io/ply_header.h"
 
 #include "base/error.h"
+#include "tests/support/error_message.h"
 
 #include <string>
 
@@ -13,14 +14,10 @@ namespace {
 using ::testing::HasSubstr;
 
 std::string error_of(const std::string& text) {
-  try {
-    parse_ply_header(text, "h.ply");
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::input);
-    return error.what();
-  }
-  ADD_FAILURE() << "no error for " << text;
-  return {};
+  const std::string message =
+      tests::error_message(ErrorCode::input, [&] { parse_ply_header(text, "h.ply"); });
+  EXPECT_NE(message, "") << "no error for " << text;
+  return message;
 }
 
 TEST(PlyHeader, ReadsElementsPropertiesAndLists) {

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "storage/format/glb.h"
 #include "storage/format/gzip.h"
+#include "tests/support/error_message.h"
 
 #include <algorithm>
 #include <array>
@@ -25,7 +26,6 @@ namespace {
 
 using progressive::DetailFileReader;
 using testing::HasSubstr;
-using testing::StartsWith;
 using DetailBytes = std::vector<std::byte>;
 
 constexpr const char* kDetailName = "some/detail_03.bin";
@@ -76,14 +76,8 @@ std::vector<DetailRun> decode(std::span<const std::byte> bytes, const AttributeL
 
 /// Returns the message that refuses the bytes; empty if they are not refused.
 std::string refused(std::span<const std::byte> bytes, const AttributeLayout& layout = {}) {
-  try {
-    decode(bytes, layout);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(std::string(kDetailName) + ": "));
-    return error.what();
-  }
-  return {};
+  return tests::error_message(
+      ErrorCode::corrupt, [&] { decode(bytes, layout); }, std::string(kDetailName) + ": ");
 }
 
 /// Ascending numbers up to `most`, the last of which is `most` itself.

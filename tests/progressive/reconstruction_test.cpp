@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "progressive/residual.h"
+#include "tests/support/error_message.h"
 
 #include <array>
 #include <cstdint>
@@ -65,13 +66,7 @@ void put(Reconstruction& mesh, const DetailRun& run) {
 }
 
 std::string flaw(Reconstruction& mesh, const DetailRun& run) {
-  try {
-    mesh.apply(run);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    return error.what();
-  }
-  return "";
+  return tests::error_message(ErrorCode::corrupt, [&] { mesh.apply(run); });
 }
 
 /// Six slots, of which four are the node's own, and three triangles.

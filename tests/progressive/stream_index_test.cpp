@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "storage/format/layout.h"
 #include "storage/io/hash.h"
+#include "tests/support/error_message.h"
 #include "tests/support/memory_files.h"
 
 #include <cstdint>
@@ -53,14 +54,8 @@ progressive::ProgressiveIndex parse(const std::string& text) {
 }
 
 std::string index_flaw(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(std::string(kStreamName) + ": "));
-    return error.what();
-  }
-  return {};
+  return tests::error_message(
+      ErrorCode::corrupt, [&] { parse(text); }, std::string(kStreamName) + ": ");
 }
 
 /// With the checksum that fits it.

@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "storage/format/hierarchy_reader.h"
+#include "tests/support/error_message.h"
 #include "tests/support/half_edge_hierarchy.h"
 #include "tests/support/memory_files.h"
 #include "tests/support/sample_hierarchy.h"
@@ -57,13 +58,7 @@ class TracedTileTest : public testing::Test {
   }
 
   std::string refused(Family family) const {
-    try {
-      lifted(std::move(family));
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::corrupt);
-      return error.what();
-    }
-    return "";
+    return tests::error_message(ErrorCode::corrupt, [&] { lifted(std::move(family)); });
   }
 
   tests::MemoryFiles files_;

@@ -6,6 +6,7 @@
 #include "pipeline/build.h"
 #include "storage/format/archive_files.h"
 #include "storage/io/hash.h"
+#include "tests/support/error_message.h"
 #include "tests/support/memory_files.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/share.h"
@@ -68,14 +69,9 @@ class PackedTest : public testing::Test {
   /// The message of the error that `job` ends with.
   template <class Job>
   std::string refusal(ErrorCode code, const Job& job) {
-    try {
-      job();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), code) << error.what();
-      return error.what();
-    }
-    ADD_FAILURE() << "no error";
-    return {};
+    const std::string message = tests::error_message(code, job);
+    EXPECT_NE(message, "") << "no error";
+    return message;
   }
 
   tests::MemoryFiles files_;

@@ -4,6 +4,7 @@
 #include "base/error.h"
 #include "gltf/sample_hierarchy.h"
 #include "storage/format/tile_glb.h"
+#include "tests/support/error_message.h"
 
 #include <cstddef>
 #include <string>
@@ -19,14 +20,9 @@ inline constexpr const char* kTileName = "some/tile.glb";
 /// The message with which decoding fails, which begins with kTileName; empty if it does not.
 inline std::string decode_failure(const std::vector<std::byte>& bytes, NodeId node,
                                   const SampleHierarchy& sample) {
-  try {
-    storage::decode_tile(bytes, node, sample.tree, sample.format, kTileName);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), testing::StartsWith(kTileName));
-    return error.what();
-  }
-  return {};
+  return error_message(
+      ErrorCode::corrupt,
+      [&] { storage::decode_tile(bytes, node, sample.tree, sample.format, kTileName); }, kTileName);
 }
 
 }  // namespace meshhier::tests

@@ -1,12 +1,12 @@
 // verify, inspect and progressive streams, where tiles have pictures.
 #include "inspection/inspect.h"
 #include "progressive/stream.h"
+#include "tests/support/error_message.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_copies.h"
 #include "tests/support/sample_hierarchy.h"
 #include "tests/support/sample_shading.h"
 #include "tests/support/sample_texture.h"
-#include "tests/support/usage_error.h"
 #include "verify/verify.h"
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 #include "storage/format/layout.h"
 #include "storage/io/forwarding_files.h"
 #include "storage/io/neighbours.h"
+#include "tests/support/error_message.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <chrono>
@@ -134,13 +135,7 @@ TEST_F(DiskClaimsTest, WhoFindsTooLittleIsToldWhatIsFreeAndWhatOthersTake) {
   const auto lock = begin("a.hier");
   const auto message = [&](std::uint64_t claimed, const auto& ask) -> std::string {
     claim(storage::work_path(output("a.hier")), claimed);
-    try {
-      ask();
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::budget);
-      return error.what();
-    }
-    return "";
+    return tests::error_message(ErrorCode::budget, ask);
   };
   const auto import_of = [&](std::uint64_t bytes) {
     return [this, bytes] { check_import_disk(bytes, output("b.hier"), *files_); };

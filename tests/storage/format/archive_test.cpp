@@ -7,6 +7,7 @@
 #include "storage/format/glb.h"
 #include "storage/format/gzip.h"
 #include "storage/io/hash.h"
+#include "tests/support/error_message.h"
 #include "tests/support/hollow_file.h"
 #include "tests/support/memory_files.h"
 
@@ -75,13 +76,8 @@ class ArchiveTest : public testing::Test {
 
   /// The message of the Error(corrupt) that opening the archive ends with.
   std::string refusal() {
-    try {
-      const Archive archive(files_.open(kPath));
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::corrupt) << error.what();
-      return error.what();
-    }
-    return {};
+    return tests::error_message(ErrorCode::corrupt,
+                                [&] { const Archive archive(files_.open(kPath)); });
   }
 
   tests::MemoryFiles files_;

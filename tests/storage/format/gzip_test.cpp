@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "storage/format/glb.h"
+#include "tests/support/error_message.h"
 
 #include <random>
 #include <string>
@@ -15,7 +16,6 @@ namespace {
 using storage::gunzip_glb;
 using storage::gzip;
 using testing::HasSubstr;
-using testing::StartsWith;
 using Bytes = std::vector<std::byte>;
 
 Bytes sample_glb(std::size_t bin_bytes) {
@@ -27,14 +27,8 @@ Bytes sample_glb(std::size_t bin_bytes) {
 }
 
 std::string failure(const Bytes& bytes) {
-  try {
-    gunzip_glb(bytes, "some/tile.glb");
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith("some/tile.glb: "));
-    return error.what();
-  }
-  return {};
+  return tests::error_message(
+      ErrorCode::corrupt, [&] { gunzip_glb(bytes, "some/tile.glb"); }, "some/tile.glb: ");
 }
 
 TEST(GzipTest, GivesBackWhatWentIn) {

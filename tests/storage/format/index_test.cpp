@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "storage/format/glb.h"
 #include "storage/io/hash.h"
+#include "tests/support/error_message.h"
 
 #include <limits>
 #include <random>
@@ -16,7 +17,6 @@ namespace {
 using storage::decode_index;
 using storage::encode_index;
 using testing::HasSubstr;
-using testing::StartsWith;
 using Bytes = std::vector<std::byte>;
 
 const char* const kIndexName = "some/tiles.bin";
@@ -96,14 +96,8 @@ Bytes sealed(Bytes bytes) {
 }
 
 std::string failure(const Bytes& bytes, const Tree& tree) {
-  try {
-    decode_index(bytes, tree, kIndexName);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kIndexName));
-    return error.what();
-  }
-  return {};
+  return tests::error_message(
+      ErrorCode::corrupt, [&] { decode_index(bytes, tree, kIndexName); }, kIndexName);
 }
 
 TEST(Index, GivesEveryRecordBack) {

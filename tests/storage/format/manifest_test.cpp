@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "storage/format/layout.h"
 #include "storage/io/hash.h"
+#include "tests/support/error_message.h"
 #include "tests/support/share.h"
 
 #include <random>
@@ -111,14 +112,8 @@ void expect_same(const Manifest& a, const Manifest& b) {
 }
 
 std::string failure(const std::string& text) {
-  try {
-    parse_manifest(text, kManifestName);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kManifestName));
-    return error.what();
-  }
-  return {};
+  return tests::error_message(
+      ErrorCode::corrupt, [&] { parse_manifest(text, kManifestName); }, kManifestName);
 }
 
 /// The text of a changed document with the checksum that fits it.
@@ -421,13 +416,8 @@ TEST(Manifest, SANITIZED_WrongWordsOfAnImportAreNamed) {
   const auto refused = [&](const char* pointer, const Json& value) -> std::string {
     Json json = good;
     json[Json::json_pointer(pointer)] = value;
-    try {
-      storage::parse_source(json, kManifestName);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::corrupt);
-      return error.what();
-    }
-    return "";
+    return tests::error_message(ErrorCode::corrupt,
+                                [&] { storage::parse_source(json, kManifestName); });
   };
   EXPECT_THAT(refused("/import", 1), testing::HasSubstr("\"source.import\" is wrong"));
   EXPECT_THAT(refused("/import/files", 1), testing::HasSubstr("\"source.import.files\" is wrong"));

@@ -6,6 +6,7 @@
 #include "storage/format/object_facts.h"
 #include "storage/io/little_endian.h"
 #include "support/memory_files.h"
+#include "tests/support/error_message.h"
 
 #include <algorithm>
 #include <map>
@@ -23,7 +24,6 @@ using storage::ObjectTable;
 using storage::ObjectTableFacts;
 using storage::ObjectTableWriter;
 using testing::HasSubstr;
-using testing::StartsWith;
 using Rows = std::vector<ObjectRow>;
 using Range = ObjectTable::Range;
 
@@ -188,17 +188,15 @@ TEST(ObjectTableTest, TheManifestTellsOfIt) {
 
 /// Reads a table in every way; returns the message of its refusal.
 std::string failure(MemoryFiles& files) {
-  try {
-    const ObjectTable table(files.open(kTable));
-    table.for_each([&](std::uint32_t object, const ObjectRow& row) {
-      EXPECT_EQ(table.find(row.name), object);
-    });
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kTable));
-    return error.what();
-  }
-  return {};
+  return tests::error_message(
+      ErrorCode::corrupt,
+      [&] {
+        const ObjectTable table(files.open(kTable));
+        table.for_each([&](std::uint32_t object, const ObjectRow& row) {
+          EXPECT_EQ(table.find(row.name), object);
+        });
+      },
+      kTable);
 }
 
 TEST(ObjectTableTest, SANITIZED_EveryFlippedBitIsFound) {

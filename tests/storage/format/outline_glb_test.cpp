@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "storage/format/glb.h"
+#include "tests/support/error_message.h"
 
 #include <algorithm>
 #include <limits>
@@ -17,7 +18,6 @@ using storage::decode_outline;
 using storage::encode_outline;
 using storage::outline_bytes;
 using testing::HasSubstr;
-using testing::StartsWith;
 using Bytes = std::vector<std::byte>;
 
 const char* const kOutlineName = "some/outline.glb";
@@ -57,14 +57,8 @@ void expect_round_trip(const Outline& outline, Vec3d origin) {
 }
 
 std::string outline_failure(const Bytes& bytes) {
-  try {
-    decode_outline(bytes, kOutlineName);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::corrupt);
-    EXPECT_THAT(error.what(), StartsWith(kOutlineName));
-    return error.what();
-  }
-  return {};
+  return tests::error_message(
+      ErrorCode::corrupt, [&] { decode_outline(bytes, kOutlineName); }, kOutlineName);
 }
 
 TEST(OutlineGlb, GivesPolylinesBackInTheSizeForetold) {

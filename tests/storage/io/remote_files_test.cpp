@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "storage/io/web_address.h"
+#include "tests/support/error_message.h"
 #include "tests/support/http_host.h"
 
 #include <algorithm>
@@ -66,14 +67,10 @@ class RemoteFilesTest : public testing::Test {
   }
   /// Returns the error of opening it, or of reading at that place.
   std::string problem(RemoteFiles& remote, std::uint64_t offset = 0) {
-    try {
+    return tests::error_message(ErrorCode::io, [&] {
       std::array<std::byte, 100> some{};
       remote.open(remote.root())->read_exact(offset, some);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ErrorCode::io);
-      return error.what();
-    }
-    return "";
+    });
   }
 
   std::function<void()> check_ = [] {};

@@ -1,6 +1,7 @@
 #include "storage/io/shared_library.h"
 
 #include "base/error.h"
+#include "tests/support/error_message.h"
 
 #include <string>
 
@@ -19,14 +20,9 @@ constexpr const char* kRemedy = "install the package libc6";
 /// The message of the I/O error that `use` must end with.
 template <class Use>
 std::string failure(const Use& use) {
-  try {
-    use();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ErrorCode::io) << error.what();
-    return error.what();
-  }
-  ADD_FAILURE() << "nothing was thrown";
-  return "";
+  const std::string message = tests::error_message(ErrorCode::io, use);
+  EXPECT_NE(message, "") << "nothing was thrown";
+  return message;
 }
 
 TEST(SharedLibraryTest, FunctionsAreThoseOfTheLibrary) {
