@@ -146,6 +146,14 @@ def slow(seconds: float) -> Reply:
     return answer
 
 
+def silent(until: threading.Event) -> Reply:
+    def answer(handler: _Handler) -> bool:
+        until.wait()
+        return False
+
+    return answer
+
+
 def with_headers(**headers: Any) -> Reply:
     """Sends what is asked for, with other headers."""
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import base64
 import http.client
 import io
+import itertools
 import os
 import pickle
 import shutil
@@ -18,7 +19,7 @@ from typing import Any, Iterator, Optional
 
 import numpy as np
 import pytest
-from host import Host, half, redirect, slow, status, times, with_headers
+from host import Host, half, redirect, silent, slow, status, times, with_headers
 
 import meshhier
 from meshhier import http_client, remote
@@ -147,7 +148,7 @@ def test_a_forked_process_waits_for_no_thread_of_its_parent(name: str, host: Hos
             time.sleep(0.01)
         child = os.fork()
         if child == 0:
-            signal.alarm(30)
+            signal.alarm(120)
             os._exit(0 if [web.read_tile(node).node for node in finest[1:3]] == finest[1:3] else 1)
         assert os.waitpid(child, 0)[1] == 0
 
@@ -159,7 +160,7 @@ def test_a_forked_process_can_close_while_its_parent_is_busy(name: str, host: Ho
         with web._files._client._connections._lock:  # type: ignore[attr-defined]
             child = os.fork()
             if child == 0:
-                signal.alarm(10)
+                signal.alarm(120)
                 web.close()
                 os._exit(0)
         assert os.waitpid(child, 0)[1] == 0
@@ -397,13 +398,18 @@ def test_who_waits_is_not_interrupted_with_who_fetches() -> None:
 
 
 def test_silent_hosts(host: Host, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(http_client, "SILENCE", 1.0)
-    host.reply = times(2, slow(3))
+    over = threading.Event()
+    limits = iter([0.3, 0.3])  # of the first connections; the others have time
+    monkeypatch.setattr(http_client.Connections, "_silence", property(lambda self: next(limits, 120), lambda self, limit: None), raising=False)
+    monkeypatch.setattr(http_client, "SILENCE", 0.3)
+    host.reply = times(2, silent(over))
     meshhier.open(f"{host.address}/a.3tz").cut(level=0)
+    limits = itertools.repeat(0.3)
     monkeypatch.setattr(http_client, "TRIES", 2)
-    host.reply = slow(3)
-    with pytest.raises(meshhier.NetworkError, match="silent for 1 s"):
+    host.reply = silent(over)
+    with pytest.raises(meshhier.NetworkError, match="silent for 0.3 s, 2 times"):
         meshhier.open(f"{host.address}/a.3tz")
+    over.set()
 
 
 def test_nobody_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -773,6 +779,6 @@ def test_a_forked_process_reads_objects_as_its_parent_did(name: str, tmp_path: P
         assert web.objects is not None and web.objects[0].name == "house 0000"
         child = os.fork()
         if child == 0:
-            signal.alarm(30)
+            signal.alarm(120)
             os._exit(0 if web.objects[599].name == "house 0599" else 1)
         assert os.waitpid(child, 0)[1] == 0

@@ -128,15 +128,14 @@ def area(task: tuple[meshhier.Hierarchy, int]) -> tuple[int, int]:
 
 
 @pytest.mark.parametrize("method", ["spawn", "fork"])
-@pytest.mark.parametrize("name", ["plain.hier", "pickled.3tz"])
-def test_processes_share_it(method: str, name: str, torus: str, built: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    built(torus, name)
-    monkeypatch.chdir(Path(built(torus, name)).parent)
-    with meshhier.open(name) as hierarchy:
-        counts = [len(hierarchy.cut(level=level).triangles) for level in range(hierarchy.levels)]
-        with multiprocessing.get_context(method).Pool(2) as pool:
+def test_processes_share_it(method: str, torus: str, built: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder, packed = (Path(built(torus, name)) for name in ("plain.hier", "pickled.3tz"))
+    monkeypatch.chdir(folder.parent)
+    with meshhier.open(folder.name) as one, meshhier.open(packed.name) as other, multiprocessing.get_context(method).Pool(2) as pool:
+        for hierarchy in (one, other):
+            counts = [len(hierarchy.cut(level=level).triangles) for level in range(hierarchy.levels)]
             found = pool.map(area, [(hierarchy, level) for level in range(hierarchy.levels)] * 3, chunksize=1)
-    assert [count for _, count in found] == counts * 3 and os.getpid() not in {process for process, _ in found}
+            assert [count for _, count in found] == counts * 3 and os.getpid() not in {process for process, _ in found}
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="there is no fork")

@@ -14,7 +14,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 import warnings
 from pathlib import Path
 from typing import Any, Callable
@@ -291,17 +290,32 @@ def test_a_stopped_build_of_another_config(large: str, tmp_path: Path) -> None:
     assert meshhier.clean(tmp_path, remove=True) == meshhier.clean(tmp_path) == []
 
 
-def test_two_builds_of_one_output(large: str, tmp_path: Path) -> None:
-    with subprocess.Popen([meshhier.find_program(), "build", large, "-o", tmp_path / "a.hier"], stdout=subprocess.DEVNULL) as other:
-        while not (tmp_path / ".a.hier.meshhier-work").exists():
-            assert other.poll() is None
-        time.sleep(0.1)
-        other.send_signal(signal.SIGSTOP)
+@pytest.fixture
+def started(monkeypatch: pytest.MonkeyPatch) -> list[Any]:
+    """Processes, as they come."""
+    processes: list[Any] = []
+
+    class Watched(subprocess.Popen):  # type: ignore[type-arg]
+        def __init__(self, *words: Any, **how: Any) -> None:
+            super().__init__(*words, **how)
+            processes.append(self)
+
+    monkeypatch.setattr(subprocess, "Popen", Watched)
+    return processes
+
+
+def test_two_builds_of_one_output(large: str, tmp_path: Path, started: list[Any]) -> None:
+    def meet(_: meshhier.Progress) -> None:
+        started[0].send_signal(signal.SIGSTOP)
         try:
             with pytest.raises(meshhier.BusyError, match="at work"):
                 meshhier.build(large, tmp_path / "a.hier")
         finally:
-            other.kill()
+            started[0].send_signal(signal.SIGCONT)
+        raise Stop
+
+    with pytest.raises(Stop):
+        meshhier.build(large, tmp_path / "a.hier", progress=meet, settings={"threads": 1})
 
 
 def test_what_is_there_is_an_error_of_files_too(torus: str, hier: str) -> None:
@@ -342,22 +356,14 @@ def test_a_file_that_cannot_be_written_is_an_error_of_files_too(hier: str, tmp_p
     assert type(failed.value) is meshhier.FileError and failed.value.exit_code == 4
 
 
-def test_a_build_that_somebody_kills_can_go_on(large: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    started: list[Any] = []
-
-    class Watched(subprocess.Popen):  # type: ignore[type-arg]
-        def __init__(self, *words: Any, **how: Any) -> None:
-            super().__init__(*words, **how)
-            started.append(self)
-
-    monkeypatch.setattr(subprocess, "Popen", Watched)
+def test_a_build_that_somebody_kills_can_go_on(large: str, tmp_path: Path, started: list[Any]) -> None:
     with pytest.raises(meshhier.KilledError) as killed:
         meshhier.build(large, tmp_path / "a.hier", progress=lambda _: started[0].terminate())
     assert killed.value.exit_code in (130, 143)
 
 
 def test_a_build_in_tasks(tiny: str, tmp_path: Path) -> None:
-    status = meshhier.plan(tiny, tmp_path / "a.hier", work=tmp_path / "work", tasks=2, settings={"partition.vertices": 70})
+    status = meshhier.plan(tiny, tmp_path / "a.hier", work=tmp_path / "work", tasks=2, settings={"partition.vertices": 300})
     assert status.next == "read" and not status.finished
     while status.next is not None:
         meshhier.task(tmp_path / "work", status.next)
@@ -436,7 +442,7 @@ def test_results_that_fill_a_pipe_do_not_stop_it(hier: str) -> None:
     got: list[bytes] = []
     thread = threading.Thread(target=lambda: got.append(meshhier.export(hier, error=0, progress=lambda _: None)), daemon=True)
     thread.start()
-    thread.join(60)
+    thread.join(300)
     assert got and len(got[0]) > 1 << 18
 
 

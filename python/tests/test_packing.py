@@ -17,7 +17,7 @@ from host import Host
 import meshhier
 from meshhier import packing
 
-FORMS: list[dict[str, object]] = [{}, {"partition__vertices": 60, "preview": True}, {"storage__compression": "meshopt_zlib"}]
+FORMS: list[tuple[str, dict[str, object]]] = [("torus", {}), ("tiny", {"partition__vertices": 8, "preview": True}), ("torus", {"storage__compression": "meshopt_zlib"})]
 
 
 def files_of(folder: Path) -> dict[str, bytes]:
@@ -25,12 +25,13 @@ def files_of(folder: Path) -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("number", range(len(FORMS)))
-def test_it_has_the_bytes_of_a_build(number: int, torus: str, built: Any, tmp_path: Path) -> None:
-    folder = Path(built(torus, f"packing{number}.hier", **FORMS[number]))
-    archive = Path(built(torus, f"packing{number}.3tz", **FORMS[number]))
+def test_it_has_the_bytes_of_a_build(number: int, built: Any, tmp_path: Path, request: pytest.FixtureRequest) -> None:
+    name, settings = FORMS[number]
+    mesh = request.getfixturevalue(name)
+    folder, archive = (Path(built(mesh, f"packing{number}{ending}", **settings)) for ending in (".hier", ".3tz"))
     assert meshhier.pack(folder, tmp_path / "a.3tz").read_bytes() == archive.read_bytes()
     assert files_of(meshhier.unpack(archive, tmp_path / "a.hier")) == files_of(folder)
-    meshhier.verify(tmp_path / "a.hier", input=torus)
+    meshhier.verify(tmp_path / "a.hier", input=mesh)
     assert sorted(os.listdir(tmp_path)) == ["a.3tz", "a.hier"]
 
 
