@@ -52,12 +52,12 @@ def _attributes(data: NDArray[np.uint8], count: int, stride: int) -> NDArray[np.
     result = np.empty((count, stride), np.uint8)
     last = data[len(data) - stride :].copy()
     block = min((_BLOCK_BYTES // stride) & ~(_GROUP - 1), _MOST_IN_BLOCK)
-    at = 1
+    packed, at = data.tobytes(), 1
     for first in range(0, count, block):
         rows = min(block, count - first)
         padded = -(-rows // _GROUP) * _GROUP
         for column in range(stride):
-            deltas, at = _column(data, at, padded)
+            deltas, at = _column(packed, at, padded)
             deltas = deltas[:rows]
             signed = (deltas >> 1) ^ (0 - (deltas & 1))
             result[first : first + rows, column] = np.cumsum(signed, dtype=np.uint8) + last[column]
@@ -65,32 +65,33 @@ def _attributes(data: NDArray[np.uint8], count: int, stride: int) -> NDArray[np.
     return result
 
 
-_SHIFTS = {1: np.array([6, 4, 2, 0], np.uint8), 2: np.array([4, 0], np.uint8)}
+# Of each byte the numbers of 2 bits and of 4 bits in it, the highest first.
+_UNPACKED = {
+    1: [bytes((byte >> 6, byte >> 4 & 3, byte >> 2 & 3, byte & 3)) for byte in range(256)],
+    2: [bytes((byte >> 4, byte & 15)) for byte in range(256)],
+}
 
 
-def _column(data: NDArray[np.uint8], at: int, padded: int) -> tuple[NDArray[np.uint8], int]:
+def _column(data: bytes, at: int, padded: int) -> tuple[NDArray[np.uint8], int]:
     """The differences of one column of a block, and where the next begins."""
-    groups = padded // _GROUP
-    headers = data[at : at + -(-groups // 4)]
-    at += len(headers)
-    deltas = np.zeros(padded, np.uint8)
+    groups, headers = padded // _GROUP, at
+    at += -(-groups // 4)
+    parts: list[bytes] = []
     for group in range(groups):
-        kind = int(headers[group // 4]) >> (2 * (group % 4)) & 3
-        if kind == 0:
-            continue
-        out = deltas[group * _GROUP : (group + 1) * _GROUP]
-        if kind == 3:
-            out[:] = data[at : at + _GROUP]
-            at += _GROUP
-            continue
-        bits = 2 * kind
-        packed = data[at : at + _GROUP * bits // 8]
-        at += len(packed)
-        out[:] = ((packed[:, None] >> _SHIFTS[kind]) & ((1 << bits) - 1)).ravel()
-        escaped = np.flatnonzero(out == (1 << bits) - 1)
-        out[escaped] = data[at : at + len(escaped)]
-        at += len(escaped)
-    return deltas, at
+        kind = data[headers + group // 4] >> (2 * (group % 4)) & 3
+        size = (0, 4, 8, _GROUP)[kind]
+        part, at = data[at : at + size], at + size
+        if kind in _UNPACKED:
+            part = b"".join(map(_UNPACKED[kind].__getitem__, part))
+            escape = (1 << 2 * kind) - 1
+            if escape in part:
+                count = part.count(escape)
+                rest = iter(data[at : at + count])
+                part, at = bytes(next(rest, 0) if value == escape else value for value in part), at + count
+        parts.append(part or bytes(_GROUP))
+    if at > len(data):
+        raise CorruptError("meshopt: the data end early")
+    return np.frombuffer(b"".join(parts), np.uint8), at
 
 
 class _Varints:

@@ -127,6 +127,7 @@ class Polygons:
         self._is_z_up = is_z_up
         moved = [[ring - self._plan(origin) for ring in polygon] for polygon in polygons]
         self._borders = [_borders_of(polygon) for polygon in moved]
+        self._known: dict[tuple[int, int], list[_Point]] = {}
         self._all = np.concatenate(self._borders)
         self._low, self._high = self._all.min(axis=1, initial=np.inf), self._all.max(axis=1, initial=-np.inf)
 
@@ -213,14 +214,20 @@ class Polygons:
     def _has(self, point: _Point) -> bool:
         """The same of one exact point."""
         north, south = np.nextafter(float(point[1]), [np.inf, -np.inf])
-        for borders in self._borders:
+        for polygon, borders in enumerate(self._borders):
             is_odd = False
-            for border in borders[(borders[..., 1].min(axis=1) <= north) & (borders[..., 1].max(axis=1) >= south)]:
-                a, b = sorted(map(_fractions, border), key=lambda end: end[1])
+            for at in np.flatnonzero((borders[..., 1].min(axis=1) <= north) & (borders[..., 1].max(axis=1) >= south)):
+                a, b = self._exact(polygon, at)
                 is_odd ^= a[1] <= point[1] < b[1] and _turn(a, b, point) > 0
             if is_odd:
                 return True
         return False
+
+    def _exact(self, polygon: int, border: int) -> list[_Point]:
+        """A border from its southern end."""
+        if (polygon, border) not in self._known:
+            self._known[polygon, border] = sorted(map(_fractions, self._borders[polygon][border]), key=lambda end: end[1])
+        return self._known[polygon, border]
 
     def _has_middle(self, triangles: _Floats) -> _Bools:
         """For each of (m, 3, 2) triangles that turn left whether its middle lies within."""

@@ -34,6 +34,11 @@ def hier(torus: str, built: Any) -> str:
 
 
 @pytest.fixture(scope="module")
+def tiny_hier(tiny: str, built: Any) -> str:
+    return str(built(tiny, "tiny.hier"))
+
+
+@pytest.fixture(scope="module")
 def large(meshgen: str, tmp_path_factory: pytest.TempPathFactory) -> str:
     """Large enough to be caught at work."""
     path = str(tmp_path_factory.mktemp("large") / "large.ply")
@@ -142,27 +147,27 @@ def test_streams_come_back(tiny: str, tmp_path: Path) -> None:
 # Facts.
 
 
-def test_compare_gives_figures(torus: str, hier: str, tmp_path: Path) -> None:
-    same = meshhier.compare(hier, torus)
-    assert same.distance.largest == 0 and same.within is None and same.from_.triangles == 20736
-    moved = bumped(torus, tmp_path / "moved.ply")
-    far = meshhier.compare(moved, hier, tmp_path / "d.ply", tolerance=0.1)
+def test_compare_gives_figures(tiny: str, tiny_hier: str, tmp_path: Path) -> None:
+    same = meshhier.compare(tiny_hier, tiny)
+    assert same.distance.largest == 0 and same.within is None and same.from_.triangles == 2304
+    moved = bumped(tiny, tmp_path / "moved.ply")
+    far = meshhier.compare(moved, tiny_hier, tmp_path / "d.ply", tolerance=0.1)
     assert far.within is False and far.farthest == pytest.approx(0.25, rel=0.1) and far.distance.percentiles[50] == 0
-    assert far.farthest <= far.no_farther_than and far.objects is None and far.to.name.endswith("commands.hier")
+    assert far.farthest <= far.no_farther_than and far.objects is None and far.to.name.endswith("tiny.hier")
     assert len(far.distance.histogram) == far.json["distance"]["histogram"]["areas"].__len__() > 10
     assert sum(far.distance.histogram) == pytest.approx(far.area, rel=1e-6)
     assert "distance" in str(read_ply(str(tmp_path / "d.ply"))[0].dtype)
-    assert meshhier.compare(moved, hier, tolerance=1).within is True
-    assert not meshhier.compare(moved, hier, unsigned=True, level=0).signed
+    assert meshhier.compare(moved, tiny_hier, tolerance=1).within is True
+    assert not meshhier.compare(moved, tiny_hier, unsigned=True, level=0).signed
 
 
-def test_compare_moves_first(torus: str, hier: str) -> None:
+def test_compare_moves_first(tiny: str, tiny_hier: str) -> None:
     up = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 10], [0, 0, 0, 1]]
     with pytest.warns(meshhier.BuildWarning, match="transform="):
-        far = meshhier.compare(hier, torus, transform=up, level=0)
+        far = meshhier.compare(tiny_hier, tiny, transform=up, level=0)
     assert far.distance.mean > 8
     with pytest.warns(meshhier.BuildWarning):
-        assert meshhier.compare(hier, torus, transform=np.array(up), level=0).distance == far.distance
+        assert meshhier.compare(tiny_hier, tiny, transform=np.array(up), level=0).distance == far.distance
 
 
 def test_compare_by_object(tmp_path: Path) -> None:
