@@ -112,9 +112,11 @@ def _address_of(hierarchy: Hierarchy) -> str:
 def make_cell(hierarchy: Hierarchy, *, height: int, view: str, link: Optional[str], size: int) -> Cell:
     """As Hierarchy.show() says."""
     height, size = whole(height, "height is a number of pixels"), whole(size, "size is a number of bytes")
+    if height < 1:
+        raise UsageError(f"height is a number of pixels, 1 or more, not {height}")
     address = _address_of(hierarchy) if link is None else link
     if re.search(r"[\s;,'\"<>]", address):
-        raise UsageError(f"no address: {address}")
+        raise UsageError(f"no address: {address}; blanks, quotes, ; , < and > are written as %20 and so on, as urllib.parse.quote() does")
     if "@" in urlsplit(address).netloc:
         raise UsageError("link has a user or a password in it, which everybody would read in the notebook: give it without")
     is_path = address != "" and not urlsplit(address).netloc

@@ -115,6 +115,8 @@ def _rows(given: Any, columns: int, name: str) -> NDArray[Any]:
         if isinstance(given, np.ma.MaskedArray):
             given = np.where(np.ma.getmaskarray(given), np.nan, np.ma.getdata(given))  # type: ignore[no-untyped-call]
         array = np.asarray(given)
+        if array.dtype.kind == "O":  # as pandas' own types come: numbers, each by itself
+            array = np.asarray(array.tolist())
         if array.dtype.kind == "b":
             raise TypeError
         if array.dtype != np.float32:

@@ -174,7 +174,7 @@ def test_rows_of_any_kind(torus: str, built: Build) -> None:
     assert (hierarchy.nearest(np.array([[1.5, 0.25, 0], [0, 0, 3]], np.float32)).distances == exact).all()
     assert (hierarchy.nearest(np.asfortranarray([[1.5, 0.25, 0], [0, 0, 3]])).distances == exact).all()
     wide = np.array([[9, 1.5, 9, 0.25, 9, 0], [9, 0, 9, 0, 9, 3]])
-    for others in (wide[:, 1::2], wide[::-1, 5::-2][::-1, ::-1], wide[:, 1::2].astype(">f8"), wide[:, 1::2].astype(">f2"), wide[:, 1::2].tolist()):
+    for others in (wide[:, 1::2], wide[::-1, 5::-2][::-1, ::-1], wide[:, 1::2].astype(">f8"), wide[:, 1::2].astype(">f2"), wide[:, 1::2].tolist(), wide[:, 1::2].astype(object)):
         assert (hierarchy.nearest(others).distances == exact).all()
     assert hierarchy.nearest((0, 0, 3)).distances[0] == exact[1]
     assert hierarchy.nearest(np.array([[0, 0, 3]])).distances[0] == exact[1]
@@ -191,7 +191,7 @@ def test_rows_of_any_kind(torus: str, built: Build) -> None:
 
 def test_what_makes_no_sense_is_told(torus: str, built: Build, tmp_path: Path) -> None:
     hierarchy = meshhier.open(built(torus, "torus.hier"))
-    for points in ([[1, 2]], [1, 2, 3, 4], "here", [["a", "b", "c"]], np.zeros((2, 3, 3)), [[1j, 0, 0]], [[True, False, True]], None):
+    for points in ([[1, 2]], [1, 2, 3, 4], "here", [["a", "b", "c"]], np.zeros((2, 3, 3)), [[1j, 0, 0]], [[True, False, True]], None, np.array([[1, 2, "3"]], object), np.array([[1, 2, None]])):
         with pytest.raises(meshhier.UsageError, match="points are an array"):
             hierarchy.nearest(points)  # type: ignore[arg-type]
     with pytest.raises(meshhier.UsageError, match="2 origins and 3 directions"):
