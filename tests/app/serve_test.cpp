@@ -4,8 +4,8 @@
 #include "tests/server/form_text.h"
 #include "tests/server/raw_client.h"
 #include "tests/server/served_folder.h"
-#include "tests/server/wait_until.h"
 #include "tests/support/meshes.h"
+#include "tests/support/wait_until.h"
 
 #include <array>
 #include <atomic>
@@ -495,7 +495,7 @@ TEST_F(ServeTest, KilledInTheMiddleOfABuildItGoesOnWhenItIsStartedAgain) {
     EXPECT_EQ(process_->end(SIGKILL), 1000 + SIGKILL);
     // The build is gone with it: its lock is free.
     const auto files = storage::make_posix_file_system();
-    wait_until([&] { return !fs::exists(work) || files->try_lock(work / "lock") != nullptr; });
+    wait_until([&] { return !files->is_locked(work / "lock"); });
   }
   EXPECT_FALSE(fs::exists(output));
   EXPECT_TRUE(fs::exists(work / "journal"));

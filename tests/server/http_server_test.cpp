@@ -8,8 +8,8 @@
 #include "tests/server/path_tricks.h"
 #include "tests/server/raw_client.h"
 #include "tests/server/served_folder.h"
-#include "tests/server/wait_until.h"
 #include "tests/support/sizes.h"
+#include "tests/support/wait_until.h"
 
 #include <algorithm>
 #include <atomic>

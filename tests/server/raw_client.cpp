@@ -17,7 +17,7 @@
 namespace meshhier::tests {
 namespace {
 
-constexpr timeval kMinute{60, 0};
+constexpr timeval kPatience{600, 0};
 
 [[noreturn]] void fail(const std::string& what) {
   throw std::runtime_error(what + ": " + std::strerror(errno));
@@ -54,7 +54,7 @@ RawClient::RawClient(std::uint16_t port, int receive_buffer_bytes, const char* f
   if (receive_buffer_bytes > 0)
     ::setsockopt(socket_, SOL_SOCKET, SO_RCVBUF, &receive_buffer_bytes,
                  sizeof(receive_buffer_bytes));
-  ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &kMinute, sizeof(kMinute));
+  ::setsockopt(socket_, SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof(kPatience));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = ::inet_addr(from);

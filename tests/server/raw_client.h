@@ -14,7 +14,7 @@ struct RawReply {
   std::string body;
 };
 
-/// One connection. Throws std::runtime_error if it cannot be made, or is silent for a minute.
+/// One connection. Throws std::runtime_error if it cannot be made, or is silent for ten minutes.
 class RawClient {
  public:
   /// `from`: the address it has itself, any of the loopback.

@@ -3,6 +3,7 @@
 #include "base/error.h"
 #include "storage/io/file_checksum.h"
 #include "tests/server/served_folder.h"
+#include "tests/support/make_later.h"
 
 #include <string>
 #include <vector>
@@ -61,6 +62,7 @@ TEST_F(SourcesTest, AnotherMeshOfTheSameSizeIsAnother) {
   const storage::FileVersion before = version();
   EXPECT_TRUE(sources_.is_still("a.ply", before));
   write("a.ply", "same size");
+  tests::make_later(inbox_.directory() / "a.ply");
   EXPECT_FALSE(is_made_of(Unknown::is_read));
   EXPECT_FALSE(sources_.is_still("a.ply", before));
   EXPECT_FALSE(sources_.is_still("none.ply", before));

