@@ -162,6 +162,7 @@ class Terminal {
     ::setenv("LC_ALL", "C", 1);
     ::setenv("PATH", ((home / "bin").string() + ":/usr/local/bin:/usr/bin:/bin").c_str(), 1);
     ::unsetenv("XDG_CONFIG_HOME");
+    ::unsetenv("XDG_DATA_HOME");
     if (::chdir(home.c_str()) == 0)
       ::execvp(words[0], words.data());
     ::_exit(127);
@@ -194,7 +195,7 @@ class Terminal {
   }
 
  private:
-  static constexpr int kPatience = 60000;  // milliseconds; a shell that answers takes none of it
+  static constexpr int kPatience = 600'000;  // milliseconds; a shell that answers takes none of it
   pid_t process_ = -1;
   int terminal_ = -1;
   std::string seen_;
@@ -217,6 +218,8 @@ class ShellTest : public ::testing::TestWithParam<Shell> {
                           "' \"$@\"\necho \"$#:\" \"$@\" END\n");
     std::filesystem::permissions(home_ / "bin/meshhier", std::filesystem::perms::owner_all);
     write("a mesh.json", "");
+    // Else fish makes them, of all manual pages, and goes on with that when the test has ended.
+    std::filesystem::create_directories(home_ / ".local/share/fish/generated_completions");
   }
   ~ShellTest() override { std::filesystem::remove_all(home_); }
 

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include <fcntl.h>
@@ -24,11 +25,40 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A pipe that is full: whoever writes to it waits until the test reads.
-class FullPipe {
+/// The messages of a program at work.
+class Messages {
  public:
-  FullPipe() {
-    EXPECT_EQ(pipe2(ends_, O_CLOEXEC), 0);
+  Messages() { EXPECT_EQ(pipe2(ends_, O_CLOEXEC), 0); }
+  Messages(const Messages&) = delete;
+  Messages& operator=(const Messages&) = delete;
+  ~Messages() {
+    close_writer();
+    close(ends_[0]);
+  }
+
+  /// The program writes to it.
+  pid_t start(const Arguments& arguments) const {
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, ends_[1], STDERR_FILENO);
+    const pid_t process = spawn(arguments, actions);
+    posix_spawn_file_actions_destroy(&actions);
+    return process;
+  }
+  /// All that comes until `last` is among it, or the program is gone.
+  std::string read_until(std::string_view last) {
+    close_writer();
+    std::string text;
+    char buffer[4096];
+    for (ssize_t count = 0; text.find(last) == std::string::npos &&
+                            (count = read(ends_[0], buffer, sizeof buffer)) > 0;)
+      text.append(buffer, static_cast<std::size_t>(count));
+    return text;
+  }
+  /// From now on the program waits as soon as it writes, until the test reads.
+  void fill() const {
     const int flags = fcntl(ends_[1], F_GETFL);
     fcntl(ends_[1], F_SETFL, flags | O_NONBLOCK);
     const std::string filling(4096, '.');
@@ -38,27 +68,13 @@ class FullPipe {
     }
     fcntl(ends_[1], F_SETFL, flags);
   }
-  ~FullPipe() {
-    close_writer();
-    close(ends_[0]);
-  }
-  int writer() const { return ends_[1]; }
+
+ private:
   void close_writer() {
     if (ends_[1] >= 0)
       close(std::exchange(ends_[1], -1));
   }
-  /// All that comes until every writer is gone.
-  std::string drain() {
-    close_writer();
-    std::string text;
-    char buffer[4096];
-    for (ssize_t count = 0; (count = read(ends_[0], buffer, sizeof buffer)) > 0;) {
-      text.append(buffer, static_cast<std::size_t>(count));
-    }
-    return text;
-  }
 
- private:
   int ends_[2] = {-1, -1};
 };
 
@@ -98,25 +114,18 @@ class Interrupted : public CommandLine {
       GTEST_SKIP() << "there is no /proc here";
   }
 
-  pid_t start_build(const FullPipe& messages) const {
-    posix_spawn_file_actions_t actions;
-    posix_spawn_file_actions_init(&actions);
-    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_adddup2(&actions, messages.writer(), STDERR_FILENO);
-    const pid_t process =
-        spawn({"build", write_config(), "--force", "--progress", "json"}, actions);
-    posix_spawn_file_actions_destroy(&actions);
-    return process;
+  pid_t start_build(const Messages& messages) const {
+    messages.fill();
+    return messages.start({"build", write_config(), "--force", "--progress", "json"});
   }
 
   Outcome interrupt_build(int signal_number) const {
-    FullPipe messages;
+    Messages messages;
     const pid_t process = start_build(messages);
     EXPECT_TRUE(wait_for_handler(process, signal_number, true));
     kill(process, signal_number);
     Outcome outcome;
-    outcome.messages = messages.drain();
+    outcome.messages = messages.read_until(R"("code":130)");
     outcome.code = wait_for(process);
     return outcome;
   }
@@ -144,7 +153,7 @@ TEST_F(Interrupted, BuildKeepsTheOutputItWasToReplace) {
 
 TEST_F(Interrupted, ASecondSignalKillsAtOnce) {
   write_mesh("a.ply");
-  const FullPipe messages;
+  const Messages messages;
   const pid_t process = start_build(messages);
   ASSERT_TRUE(wait_for_handler(process, SIGINT, true));
   kill(process, SIGINT);
@@ -155,7 +164,7 @@ TEST_F(Interrupted, ASecondSignalKillsAtOnce) {
 
 TEST_F(Interrupted, SLOW_AnotherBuildOfTheOutputIsRefusedMeanwhile) {
   write_mesh("a.ply");
-  FullPipe messages;
+  const Messages messages;
   const pid_t process = start_build(messages);
   ASSERT_TRUE(wait_for_handler(process, SIGINT, true));
   // Its messages nobody reads, so it stays where it is; the directory is there before the first.
@@ -194,12 +203,18 @@ class Killed : public CommandLine {
     return std::filesystem::exists(journal) && text_of(journal).find("ingest") != std::string::npos;
   }
 
-  /// Kills builds until one leaves work behind.
+  /// Kills builds in the middle until one leaves work behind.
   void leave_work() const {
-    for (useconds_t after = 5000; !has_work(); after = after % 400000 + 1000) {
-      kill_build(after);
+    while (!has_work()) {
       std::filesystem::remove_all(hierarchy());
+      Messages messages;
+      const pid_t process =
+          messages.start({"build", (work() / "a.json").string(), "--progress", "json"});
+      messages.read_until(R"("stage":"leaves")");
+      kill(process, SIGKILL);
+      wait_for(process);
     }
+    std::filesystem::remove_all(hierarchy());
   }
 };
 

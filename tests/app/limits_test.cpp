@@ -63,10 +63,11 @@ TEST_F(Limited, FewerThreadsDo) {
   const std::string mesh = (work() / "a.ply").string();
   const auto before = contents(hierarchy());
   const std::string made = (work() / "b.hier").string();
-  // The system limits no user 0: another one, who may open what user 0 may, since the program and
-  // the folder of the tests may lie where nobody else comes.
+  // The system limits no user 0: another one, of whom nothing else runs, and who may open what user
+  // 0 may, since the program and the folder of the tests may lie where nobody else comes.
   const std::string as_another =
-      "exec setpriv --reuid=65534 --inh-caps=-all,+dac_override --ambient-caps=-all,+dac_override "
+      "exec setpriv --reuid=" + std::to_string(10'000 + ::getpid() % 50'000) +
+      " --inh-caps=-all,+dac_override --ambient-caps=-all,+dac_override "
       "bash -c '";
   const std::string then = " exec \"$0\" \"$@\"";
   const auto run_limited = [&](const std::string& setting, const Arguments& arguments) {
