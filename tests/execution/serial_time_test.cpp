@@ -17,34 +17,38 @@ void compute(double seconds) {
   }
 }
 
-/// Returns the serial time that a call takes.
+// CPU seconds, whatever else runs.
+constexpr double kStep = 0.004;
+constexpr double kSlack = 0.02;  // the scheduler's own
+
+/// Checks that a call takes so much serial time, and at most so much more. A virtual machine may
+/// count what its host took from it, so one try of several is enough for the latter.
 template <class Call>
-double serial_part(const Call& call) {
-  const double before = serial_seconds();
-  call();
-  return serial_seconds() - before;
+void expect_serial_part(double expected, double more, const Call& call) {
+  constexpr int kMostTries = 20;
+  double part = expected + more;
+  for (int tries = 0; part >= expected + more && tries < kMostTries; ++tries) {
+    const double before = serial_seconds();
+    call();
+    part = serial_seconds() - before;
+    EXPECT_GE(part, expected);
+  }
+  EXPECT_LT(part, expected + more);
 }
 
-// CPU seconds, whatever else runs; more than these are only the scheduler's own.
-constexpr double kStep = 0.004;
-constexpr double kSlack = 0.02;
-
 TEST(SerialTimeTest, WhatIsInNoParallelCallCountsAsAWhole) {
-  const double part = serial_part([] { compute(10 * kStep); });
-  EXPECT_GE(part, 10 * kStep);
-  EXPECT_LT(part, 10 * kStep + kSlack);
+  expect_serial_part(10 * kStep, kSlack, [] { compute(10 * kStep); });
 }
 
 TEST(SerialTimeTest, OfAParallelLoopTheLongestPieceCounts) {
-  const double part = serial_part(
-      [] { parallel_for(20, [](std::size_t i) { compute(i == 3 ? 2 * kStep : kStep); }); });
-  EXPECT_GE(part, 2 * kStep);
-  EXPECT_LT(part, 2 * kStep + kSlack);
+  expect_serial_part(2 * kStep, kSlack, [] {
+    parallel_for(20, [](std::size_t i) { compute(i == 3 ? 2 * kStep : kStep); });
+  });
 }
 
 TEST(SerialTimeTest, OfAPipelineItsReadsOrItsSinksCount) {
   for (const bool reads : {false, true}) {
-    const double part = serial_part([&] {
+    expect_serial_part(20 * kStep, kStep + kSlack, [&] {
       std::size_t next = 0;
       ordered_read_blocks<std::size_t>(
           8, CancelToken(),
@@ -55,13 +59,12 @@ TEST(SerialTimeTest, OfAPipelineItsReadsOrItsSinksCount) {
           },
           [](std::size_t) { compute(kStep); }, [&](std::size_t) { compute(reads ? 0 : kStep); });
     });
-    EXPECT_GE(part, 20 * kStep) << reads;
-    EXPECT_LT(part, 21 * kStep + kSlack) << reads;
   }
 }
 
+// A piece may do work of another one while it waits.
 TEST(SerialTimeTest, OfCallsWithinCallsTheOutermostCounts) {
-  const double part = serial_part([] {
+  expect_serial_part(4 * kStep, kSlack + 16 * kStep, [] {
     parallel_for(20, [](std::size_t) {
       ordered_blocks<int>(
           4, 2, CancelToken(), [](std::size_t, int&) {},
@@ -71,9 +74,6 @@ TEST(SerialTimeTest, OfCallsWithinCallsTheOutermostCounts) {
           });
     });
   });
-  EXPECT_GE(part, 4 * kStep);
-  EXPECT_LT(part, 4 * kStep + kSlack + 16 * kStep)
-      << "a piece may do work of another one while it waits";
 }
 
 }  // namespace

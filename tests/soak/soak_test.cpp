@@ -395,7 +395,7 @@ class KilledTasks {
       return;
     const fs::path& segment = segments[dice_.from(0, segments.size() - 1)];
     const std::uint64_t bytes = fs::file_size(segment);
-    if (dice_.one_in(2))
+    if (bytes == 0 || dice_.one_in(2))
       fs::remove(segment);
     else
       fs::resize_file(segment, dice_.from(0, bytes - 1));
