@@ -1,5 +1,6 @@
 #include "server/build_process.h"
 
+#include "base/error.h"
 #include "storage/io/child_process.h"
 
 #include <algorithm>
@@ -17,6 +18,9 @@ constexpr std::chrono::milliseconds kHearFor{50};
 
 /// A build's lines have some hundred bytes; anything longer is no line of a build.
 constexpr std::size_t kLongestLine = 64 * 1024;
+
+/// The code of one that was asked to stop, by SIGTERM, before it could hear it.
+constexpr int kNotBegun = 128 + 15;
 
 void take_lines(std::string& text, Job& job, const BuildListener& listener) {
   for (std::size_t end = text.find('\n'); end != std::string::npos; end = text.find('\n')) {
@@ -43,6 +47,8 @@ BuildEnd run_build_process(const std::vector<std::string>& words, Job job,
   }
   take_lines(text, job, listener);
   BuildEnd end{child.wait(), job.message, job.warnings};
+  if (is_asked && end.code == kNotBegun)
+    return {static_cast<int>(ErrorCode::interrupted), "interrupted", {}};
   if (end.message.empty() && end.code > 128)
     end.message = fmt::format("the build was ended by signal {}", end.code - 128);
   else if (end.message.empty())

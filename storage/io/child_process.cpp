@@ -51,6 +51,28 @@ Pipe make_sockets() {
   return {ends[0], ends[1]};
 }
 
+/// Forgets the handlers of the process that this one was forked from, as exec does: until then a
+/// signal that asks the program to stop would be lost in them.
+void forget_handlers() {
+  for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
+    struct sigaction action {};
+    if (::sigaction(number, nullptr, &action) == 0 && action.sa_handler != SIG_IGN)
+      ::signal(number, SIG_DFL);
+  }
+}
+
+/// Does what fork() does. A signal that is sent to the new process at once waits for it.
+pid_t fork_without_handlers() {
+  sigset_t all{}, before{};
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);
+  const pid_t process = ::fork();
+  if (process == 0)
+    forget_handlers();
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return process;
+}
+
 /// Turns the forked process into the program, or ends it. Between fork and exec only calls that are
 /// safe in a signal handler are allowed: other threads may have held locks, of malloc for one.
 /// `errors`: -1 if they are dropped; `socket`: -1 if it is not spoken with.
@@ -84,7 +106,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& words, Errors errors,
   const Pipe sockets = speech == Speech::socket ? make_sockets() : Pipe();
   const Pipe pipe = errors == Errors::heard ? make_pipe() : Pipe();
   const pid_t parent = ::getpid();
-  process_ = ::fork();
+  process_ = fork_without_handlers();
   const int error = errno;
   if (process_ == 0)
     become(arguments.data(), pipe.writer, sockets.writer, parent);

@@ -88,6 +88,16 @@ TEST(ChildProcessTest, ItCanBeAskedToStop) {
   EXPECT_EQ(child.wait(), 3);
 }
 
+TEST(ChildProcessTest, ItCanBeAskedToStopBeforeItHasBegun) {
+  const auto handler = std::signal(SIGTERM, [](int) {});  // this process's own
+  for (int i = 0; i < 20; ++i) {
+    ChildProcess child(shell("exec sleep 10"));
+    child.ask_to_stop();
+    ASSERT_EQ(child.wait(), 128 + SIGTERM);
+  }
+  std::signal(SIGTERM, handler);
+}
+
 TEST(ChildProcessTest, WhatCannotBeStartedEndsWith127) {
   ChildProcess child({"/nowhere/program"});
   EXPECT_EQ(child.wait(), 127);
