@@ -258,7 +258,7 @@ def _failure(address: Address, error: Exception) -> Exception:
     """Why a request has no answer."""
     if isinstance(error, ssl.SSLCertVerificationError):
         return NetworkError(
-            f"{address.shown}: its certificate is not valid, so nobody knows who answers ({error.verify_message}); SSL_CERT_FILE can name a file of other authorities"
+            f"{address.shown}: its certificate is not valid, so nobody knows who answers ({error.verify_message}); CURL_CA_BUNDLE, else SSL_CERT_FILE, can name a file of other authorities"
         )
     if isinstance(error, http.client.LineTooLong) or "headers" in str(error):
         return NetworkError(f"{address.shown}: the header of the host's answer is too large")

@@ -672,6 +672,10 @@ def test_certificates(root: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "cert.pem"))
         with meshhier.open(f"{host.address}/a.3tz") as web:
             assert len(web.cut().triangles) == 20736
+        subprocess.run([*made, "-keyout", tmp_path / "other_key.pem", "-out", tmp_path / "other.pem"], check=True, capture_output=True)
+        monkeypatch.setenv("CURL_CA_BUNDLE", str(tmp_path / "other.pem"))
+        with pytest.raises(meshhier.NetworkError, match="CURL_CA_BUNDLE, else SSL_CERT_FILE"):
+            meshhier.open(f"{host.address}/a.3tz")
         monkeypatch.setenv("CURL_CA_BUNDLE", str(tmp_path / "none.pem"))
         with pytest.raises(meshhier.NetworkError, match="CURL_CA_BUNDLE"):
             meshhier.open(f"{host.address}/a.3tz")
