@@ -26,10 +26,21 @@
 
 namespace meshhier::storage {
 
+namespace {
+
+const char* hint_at(const std::filesystem::path& path, int error) {
+  if (error == ENOSPC || error == EDQUOT)
+    return " (free some space and run again)";
+  if (error == ENOENT && !path.empty() && *path.begin() == "-")
+    return " (standard input is not read here: save what it has, and name that file)";
+  return "";
+}
+
+}  // namespace
+
 void fail_system(const char* action, const std::filesystem::path& path, int error) {
-  const char* hint = error == ENOSPC || error == EDQUOT ? " (free some space and run again)" : "";
-  const std::string message =
-      fmt::format("cannot {} {}: {}{}", action, path.string(), std::strerror(error), hint);
+  const std::string message = fmt::format("cannot {} {}: {}{}", action, path.string(),
+                                          std::strerror(error), hint_at(path, error));
   if (error == EMFILE || error == ENFILE || error == ENOMEM)
     throw Busy(message);
   throw Error(ErrorCode::io, message);
@@ -208,6 +219,9 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
         break;  // a path that is still a link leads to nothing
       result = result.parent_path() / std::filesystem::read_symlink(result, error);
     }
+    const FileKind found = error ? kind(path) : FileKind::none;
+    if (found != FileKind::none && found != FileKind::directory)
+      return std::filesystem::absolute(path);  // a pipe, to which /dev/stdin leads by no path
     if (error)
       fail_system("resolve", path, error.value());
     return result;

@@ -311,7 +311,7 @@ class HttpClient::Connection {
     return passing(address, may_pass(code),
                    code == CURLE_PEER_FAILED_VERIFICATION
                        ? "its certificate is not valid, so nobody knows who answers; "
-                         "CURL_CA_BUNDLE can name a file of other authorities"
+                         "CURL_CA_BUNDLE, else SSL_CERT_FILE, can name a file of other authorities"
                        : curl_easy_strerror(code));
   }
 

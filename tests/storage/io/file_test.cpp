@@ -5,10 +5,12 @@
 #include "tests/support/pattern.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -372,6 +374,21 @@ TEST_F(FileTest, CanonicalPathsHaveNoLinksAndDotsAsFarAsTheyExist) {
   std::filesystem::current_path(directory_);
   EXPECT_EQ(files_->canonical("link/new"), real / "new");
   std::filesystem::current_path(before);
+}
+
+// As /dev/stdin leads to a pipe, which has no path of its own.
+TEST_F(FileTest, APipeBehindALinkOfTheSystemKeepsItsPath) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  const std::filesystem::path path = fmt::format("/proc/self/fd/{}", ends[0]);
+  EXPECT_EQ(files_->canonical(path), path);
+  EXPECT_THAT(error_of([&] { (void)files_->open(path); }).what(), HasSubstr("not a regular file"));
+  ::close(ends[0]);
+  ::close(ends[1]);
+}
+
+TEST_F(FileTest, WhoMeansStandardInputIsToldThatItIsNotRead) {
+  EXPECT_THAT(error_of([&] { (void)files_->open("-"); }).what(), HasSubstr("save what it has"));
 }
 
 TEST_F(FileTest, APathThatCannotBeResolvedIsAnError) {
