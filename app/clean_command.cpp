@@ -19,7 +19,7 @@ struct CleanArguments {
 };
 
 int run_clean(const CleanArguments& arguments, Environment& environment) {
-  const auto found = pipeline::find_leftovers(environment.files, arguments.path);
+  auto found = pipeline::find_leftovers(environment.files, arguments.path);
   if (arguments.remove)
     pipeline::remove_leftovers(environment.files, found);
   if (arguments.json) {
@@ -33,8 +33,7 @@ int run_clean(const CleanArguments& arguments, Environment& environment) {
 constexpr const char* kCleanFooter =
     R"(A build that was stopped keeps what it has done beside its output, so that the same build can go on.
 This lists such work, what other commands left that were killed, and notes of serve --watch about
-hierarchies that are gone. Run --remove when no verify, export or upload is at work there; builds at
-work are left alone.
+hierarchies that are gone. What commands that are at work need is left alone.
 
 Examples:
   meshhier clean                        what lies in this directory

@@ -89,7 +89,7 @@ class DifferenceHierarchy {
  private:
   config::Config config_;
   bool replaces_;
-  exporting::WorkFolder folder_;
+  exporting::MeshFolder folder_;
 };
 
 int run_compare(CompareArguments arguments, execution::ProgressMode mode,

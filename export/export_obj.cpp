@@ -63,6 +63,7 @@ class ObjPictures {
         unfinished_(storage::unfinished_path(folder_)),
         materials_(job.files, {beside(job.request.path, ".mtl"), replace_, job.request.inputs},
                    [&job] { job.cancel.check(); }),
+        lock_(storage::lock_output(files_, folder_, folder_, [&job] { job.cancel.check(); })),
         text_(*materials_.file()) {
     require_free();
     storage::require_apart(files_, folder_, job.request.inputs);
@@ -142,6 +143,7 @@ class ObjPictures {
   std::string stem_;
   fs::path folder_, unfinished_;
   storage::OutputFile materials_;
+  std::unique_ptr<storage::FileLock> lock_;  ///< of the folder
   ByteStream text_;
 };
 

@@ -5,7 +5,7 @@
 #include "execution/cancel.h"
 #include "execution/progress.h"
 #include "export/export.h"
-#include "export/work_folder.h"
+#include "storage/format/work_folder.h"
 #include "storage/io/file.h"
 
 #include <cstdint>
@@ -13,6 +13,9 @@
 #include <optional>
 
 namespace meshhier::exporting {
+
+/// Beside a hierarchy, for the mesh that it is made of.
+using MeshFolder = storage::WorkFolder;
 
 /// Returns whether an output of export is a hierarchy: NAME.hier or NAME.3tz.
 bool is_hierarchy_name(const std::filesystem::path& output);
@@ -41,7 +44,7 @@ class PieceMesh {
   const config::Config& config() const { return config_; }
 
  private:
-  std::optional<WorkFolder> folder_;
+  std::optional<MeshFolder> folder_;
   config::Config config_;
 };
 

@@ -9,11 +9,11 @@
 #include "pipeline/stage_costs.h"
 #include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
+#include "storage/format/work_folder.h"
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <random>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -68,23 +68,19 @@ Json memory_json(const BuildEstimate& e) {
 
 namespace {
 
-/// Imports an input that is text or packed, or is to be welded, beside the output to count it, and
-/// counts places; leaves nothing behind.
+/// Imports an input that is text or packed, or is to be welded, into a folder to count it, and
+/// counts places.
 void count_by_reading(const config::Config& config, importing::MeshInput& input,
-                      storage::FileSystem& files, storage::MemoryPool& pool,
+                      const std::filesystem::path& folder, storage::MemoryPool& pool,
                       const execution::CancelToken& cancel) {
   const importing::ImportMemory memory = import_memory(input, config);
-  check_import_disk(import_disk(input, config), config.output, files);
-  const std::filesystem::path beside =
-      storage::existing_directory(files, config.output) / config.output.filename();
-  std::random_device chance;
-  const auto scratch = [&] { return storage::verify_scratch_path(beside, chance()); };
   const tbb::global_control thread_limit(tbb::global_control::max_allowed_parallelism,
                                          thread_count(config));
   pool.set_capacity(memory.pool_bytes);
   execution::NoProgress silent;
   read_once(input, config,
-            {scratch(), scratch(), pool, memory.sort_bytes, silent, cancel, scratch()});
+            {folder / "mesh", folder / "scratch", pool, memory.sort_bytes, silent, cancel,
+             folder / "objects"});
 }
 
 void describe_import(const importing::InputFiles& input, const importing::ImportMemory& memory,
@@ -112,12 +108,6 @@ std::string placement_of(const config::Config& config, importing::MeshInput& inp
   return transform ? config::placement_text(config, bounds, *transform) : "";
 }
 
-std::uint64_t bytes_there(const std::filesystem::path& path, storage::FileSystem& files) {
-  if (files.is_directory(path))
-    return storage::bytes_below(files, path);
-  return files.exists(path) ? files.identity(path).bytes : 0;
-}
-
 }  // namespace
 
 TimeEstimate estimate_time(const BuildPlan& plan, std::uint64_t input_bytes) {
@@ -138,10 +128,14 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
   check_apart(config, files);
   storage::check_place(files, config.output);
   storage::MemoryPool pool(0);
+  std::optional<storage::WorkFolder> folder;
   importing::MeshInput input = open_input(config, files);
   if (is_read_before_plan(input, config)) {
     storage::check_output(files, {config.output, config.storage.container}, force);
-    count_by_reading(config, input, files, pool, cancel);
+    check_import_disk(import_disk(input, config), config.output, files);
+    folder.emplace(files,
+                   storage::existing_directory(files, config.output) / config.output.filename());
+    count_by_reading(config, input, folder->path(), pool, cancel);
   }
   BuildEstimate estimate{.plan = plan_build(config, input.description(), imported_by(input)),
                          .mesh = input.description(),
@@ -163,8 +157,8 @@ BuildEstimate estimate_build(const config::Config& asked, bool force, storage::F
   estimate.memory_budget_bytes = memory_budget(config);
   estimate.least_budget_bytes = least_budget(memory_costs(estimate.plan.job));
   estimate.free_bytes = files.free_bytes(estimate.disk);
-  estimate.replaced_bytes = bytes_there(config.output, files);
-  estimate.left_bytes = bytes_there(storage::work_path(config.output), files);
+  estimate.replaced_bytes = storage::bytes_at(files, config.output);
+  estimate.left_bytes = storage::bytes_at(files, storage::work_path(config.output));
   return estimate;
 }
 

@@ -56,6 +56,8 @@ class Hierarchies {
   /// that can be read, whatever else lies in the folder. Throws Error(io) if that file, of a
   /// hierarchy that can be read, cannot be opened.
   std::optional<PublishedFile> open(std::string_view path);
+  /// Returns the name of the build that is there now; empty if there is none that can be read.
+  std::string build_of(const std::string& hierarchy);
 
  private:
   /// The content of a manifest, an archive or a stream's index, as long as its file is this one.
@@ -81,7 +83,6 @@ class Hierarchies {
   std::optional<PublishedFile> open_archive(const std::string& path);
   /// Opens a file of a hierarchy, and tells the build that it belongs to.
   std::optional<PublishedFile> open_of_build(const std::string& hierarchy, const std::string& name);
-  std::string build_of(const std::string& hierarchy);
   std::optional<PublishedFile> open_in(const std::string& hierarchy, const std::string& name);
   void tell_left_out(const std::string& cause);
   void tell_once(const std::string& message);

@@ -6,6 +6,7 @@
 #include "server/folder_scan.h"
 #include "server/gallery.h"
 #include "server/hierarchies.h"
+#include "storage/format/build_name.h"
 #include "storage/format/layout.h"
 #include "storage/format/sealed_json.h"
 #include "storage/format/story_pictures.h"
@@ -79,9 +80,8 @@ class SiteMaker {
       write(copy);
       progress_.copied();
     }
-    for (const Copy& copy : copies)
-      require_unchanged(copy);
     for (const Model& model : models_) {
+      require_unchanged(model);
       if (is_archive_name(model.path) && model.has_preview)
         write_picture(model);
     }
@@ -150,18 +150,18 @@ class SiteMaker {
     write(*from, place_ / copy.to);
   }
 
-  /// Throws if the manifest, which comes first of a hierarchy's files, is not the one that was
-  /// copied any more: else all files are of one build.
-  void require_unchanged(const Copy& copy) const {
-    if (fs::path(copy.name).filename() != storage::manifest_path({}))
-      return;
-    const auto now = copy.folder->open(copy.name);
-    const auto copied = files_.open(place_ / copy.to);
-    if (!now || storage::read_sealed_text(*now) != storage::read_sealed_text(*copied)) {
+  /// Throws if the build that was listed is not the one that was copied, or is not there any more:
+  /// else all files, of which the manifest was copied first, are of one build.
+  void require_unchanged(const Model& model) {
+    if (job_.models->open(model.path))
+      return;  // an archive is one file
+    const fs::path copied = storage::manifest_path(place_ / joined("models", model.path));
+    if (!files_.exists(copied) || hierarchies_.build_of(model.path) != model.build ||
+        storage::build_name(storage::read_sealed_text(*files_.open(copied))) != model.build) {
       throw Error(ErrorCode::io,
                   fmt::format("{}: another hierarchy has taken its place while it was copied: make "
                               "the site again",
-                              fs::path(copy.name).parent_path().string()));
+                              model.path));
     }
   }
 
@@ -219,6 +219,9 @@ std::string write_site(storage::FileSystem& files, const SiteJob& given,
       job.output.string(), {},
       "of a folder page makes a folder, the site; name it without an ending");
   require_place(files, job);
+  if (job.output.has_parent_path())
+    files.make_directories(job.output.parent_path());
+  const auto lock = storage::lock_output(files, job.output, job.output, progress.check);
   const fs::path part = storage::unfinished_path(job.output);
   files.remove_all(part);
   files.make_directories(part);
@@ -226,6 +229,7 @@ std::string write_site(storage::FileSystem& files, const SiteJob& given,
     const std::string line = SiteMaker(files, job, progress, part).run();
     files.sync_tree(part);
     if (files.exists(job.output)) {
+      require_place(files, job);  // it may have appeared
       if (!files.exchange(part, job.output)) {
         files.remove_all(job.output);
         files.rename(part, job.output);

@@ -1,6 +1,11 @@
 #include "pipeline/journal/clean.h"
 
 #include "execution/size_text.h"
+#include "storage/format/work_directory.h"
+#include "storage/io/system_failure.h"
+
+#include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,13 +23,13 @@ const char* description(const FoundLeftover& leftover) {
       return leftover.only_copy ? "the hierarchy a build was about to replace: the only copy"
                                 : "a hierarchy that was replaced";
     case Leftover::verify:
-      return "room of a verify";
+      return leftover.in_use ? "room of a command at work" : "room of a command that was stopped";
     case Leftover::input_note:
       return "a note about a hierarchy that is gone";
     case Leftover::unfinished:
       break;
   }
-  return "a file that was not finished";
+  return leftover.in_use ? "a file that is being written" : "a file that was not finished";
 }
 
 /// Whether it is a leftover: a note about a hierarchy that is there, or can have its name back, is
@@ -34,14 +39,40 @@ bool is_leftover(storage::FileSystem& files, Leftover kind, const fs::path& outp
          (!files.exists(output) && !files.exists(storage::replaced_path(output)));
 }
 
-bool is_in_use(storage::FileSystem& files, const FoundLeftover& leftover) {
-  return leftover.kind == Leftover::build && files.is_locked(storage::lock_path(leftover.path));
+/// Returns the file that whoever is at work there has locked.
+fs::path lock_of(const FoundLeftover& leftover) {
+  switch (leftover.kind) {
+    case Leftover::replaced:
+      return storage::lock_path(storage::work_path(leftover.output));
+    case Leftover::unfinished:
+      return storage::output_lock_path(leftover.output);
+    default:
+      return storage::lock_path(leftover.path);
+  }
 }
 
-std::uint64_t bytes_of(storage::FileSystem& files, const FoundLeftover& leftover) {
-  if (!files.is_directory(leftover.path))
-    return files.identity(leftover.path).bytes;
-  return storage::bytes_below(files, leftover.path);
+/// Whether it is a directory that its lock lies in; others may put a file or a link there.
+bool is_work(storage::FileSystem& files, const FoundLeftover& leftover) {
+  return lock_of(leftover) == storage::lock_path(leftover.path) &&
+         files.is_directory(leftover.path) && !files.is_link(leftover.path);
+}
+
+/// Removes a leftover, unless somebody has begun to use it.
+void remove_unused(storage::FileSystem& files, FoundLeftover& leftover) {
+  const bool is_work_folder = is_work(files, leftover);
+  std::unique_ptr<storage::FileLock> lock;
+  if (is_work_folder || leftover.kind == Leftover::unfinished) {
+    lock = files.try_lock(lock_of(leftover));
+    leftover.in_use = lock == nullptr;
+  } else {
+    leftover.in_use = !is_leftover(files, leftover.kind, leftover.output);
+  }
+  if (leftover.in_use)
+    return;
+  if (is_work_folder)
+    storage::remove_work(files, leftover.path, std::move(lock));
+  else
+    files.remove_all(leftover.path);
 }
 
 }  // namespace
@@ -60,20 +91,25 @@ std::vector<FoundLeftover> find_leftovers(storage::FileSystem& files,
     FoundLeftover leftover{child, name->kind, directory / name->output};
     if (!is_leftover(files, leftover.kind, leftover.output))
       continue;
-    leftover.in_use = is_in_use(files, leftover);
+    leftover.in_use = files.is_locked(lock_of(leftover));
     leftover.only_copy = name->kind == Leftover::replaced && !files.exists(leftover.output);
-    leftover.bytes = leftover.in_use ? 0 : bytes_of(files, leftover);
+    leftover.bytes = leftover.in_use ? 0 : storage::bytes_at(files, leftover.path);
     found.push_back(std::move(leftover));
   }
   return found;
 }
 
-void remove_leftovers(storage::FileSystem& files, const std::vector<FoundLeftover>& found) {
-  for (const FoundLeftover& leftover : found) {
-    if (leftover.only_copy)
-      files.rename(leftover.path, leftover.output);
-    else if (!leftover.in_use)
-      files.remove_all(leftover.path);
+void remove_leftovers(storage::FileSystem& files, std::vector<FoundLeftover>& found) {
+  for (FoundLeftover& leftover : found) {
+    try {
+      if (leftover.in_use)
+        continue;
+      if (leftover.only_copy)
+        leftover.only_copy = files.rename_new(leftover.path, leftover.output);
+      if (!leftover.only_copy)
+        remove_unused(files, leftover);
+    } catch (const storage::NotThere&) {  // who was at work has removed it
+    }
   }
 }
 
@@ -85,7 +121,7 @@ std::string leftovers_text(const std::vector<FoundLeftover>& found, bool removed
   for (const FoundLeftover& leftover : found) {
     const char* done = "";
     if (removed)
-      done = leftover.only_copy ? ": has its name back" : leftover.in_use ? ": stays" : ": removed";
+      done = leftover.in_use ? ": stays" : leftover.only_copy ? ": has its name back" : ": removed";
     text += fmt::format("{:>9}  {}  {}{}\n", execution::rounded_size_text(leftover.bytes),
                         leftover.path.string(), description(leftover), done);
     bytes += leftover.bytes;

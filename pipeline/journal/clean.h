@@ -19,7 +19,7 @@ struct FoundLeftover {
   storage::Leftover kind{};
   std::filesystem::path output;  ///< the file or hierarchy that it belongs to
   std::uint64_t bytes = 0;
-  bool in_use = false;     ///< a build is at work there
+  bool in_use = false;     ///< a build, or another command, is at work there
   bool only_copy = false;  ///< a hierarchy that was to be replaced, and nothing replaced it
 };
 
@@ -29,8 +29,8 @@ std::vector<FoundLeftover> find_leftovers(storage::FileSystem& files,
                                           const std::filesystem::path& directory_or_output);
 
 /// Removes leftovers that are not in use; gives a hierarchy that is the only copy its name back
-/// instead. Throws Error(io).
-void remove_leftovers(storage::FileSystem& files, const std::vector<FoundLeftover>& found);
+/// instead. Corrects what has become of one since it was found. Throws Error(io).
+void remove_leftovers(storage::FileSystem& files, std::vector<FoundLeftover>& found);
 
 /// Returns a line each and, unless they were `removed` (by remove_leftovers()), one with their sum;
 /// of none, a line that says so.

@@ -31,12 +31,6 @@ std::uint32_t largest_partition(const Tree& tree) {
                                     tree.partition_count());
 }
 
-/// Returns the bytes that an earlier build of the output left: the new one takes them over.
-std::uint64_t bytes_left(const std::filesystem::path& output, storage::FileSystem& files) {
-  const std::filesystem::path work = storage::work_path(output);
-  return files.exists(work) ? storage::bytes_below(files, work) : 0;
-}
-
 /// The disk that a build may take.
 struct FreeDisk {
   std::filesystem::path directory;
@@ -64,7 +58,7 @@ struct FreeDisk {
 FreeDisk find_free_disk(const std::filesystem::path& output, storage::FileSystem& files) {
   const std::filesystem::path directory = storage::existing_directory(files, output);
   return {directory, files.free_bytes(directory), claimed_beside(output, files),
-          bytes_left(output, files)};
+          storage::bytes_at(files, storage::work_path(output))};
 }
 
 void add_textures(const config::Config& config, const TexturePlan& textures, JobSize& job) {

@@ -4,6 +4,7 @@
 #include "storage/format/layout.h"
 #include "storage/format/work_directory.h"
 #include "storage/io/neighbours.h"
+#include "storage/io/system_failure.h"
 
 #include <algorithm>
 #include <charconv>
@@ -30,11 +31,10 @@ std::uint64_t read_claim(const fs::path& lock, storage::FileSystem& files) {
   return bytes;
 }
 
-/// Returns the bytes of a build's files; 0 if one may not be read, or has gone while they are
-/// counted, as temporary ones do.
+/// Returns the bytes of a build's files; 0 if one may not be read.
 std::uint64_t written_in(const fs::path& work, storage::FileSystem& files) {
   try {
-    return storage::bytes_below(files, work);
+    return storage::bytes_at(files, work);
   } catch (const Error&) {
     return 0;
   }
@@ -69,9 +69,12 @@ std::set<fs::path> works_beside(const fs::path& parent, storage::FileSystem& fil
     if (name && name->kind == storage::Leftover::build)
       works.insert(files.canonical(work));
   };
-  if (files.can_list(parent)) {
-    for (const fs::path& child : files.children(parent))
-      add(child);
+  try {
+    if (files.can_list(parent)) {
+      for (const fs::path& child : files.children(parent))
+        add(child);
+    }
+  } catch (const storage::NotThere&) {  // a build that made it has given up
   }
   if (const auto* shared = dynamic_cast<const storage::SharedFileSystem*>(&files)) {
     for (const fs::path& lock : shared->locked_files(parent, "/" + storage::lock_path("").string()))

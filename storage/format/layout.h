@@ -30,7 +30,7 @@
 //   WORK/hierarchy/, WORK/archive            as above
 //   .NAME.hier.meshhier-old/                 a replaced hierarchy, for the moment of the rename
 //   .NAME.hier.meshhier-input                by `serve --watch`: which version of which file it was made of
-//   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room
+//   .NAME.hier.meshhier-verify-XXXXXXXX      beside a hierarchy while `verify` needs room, or one is made of a piece; a folder has a lock, too
 //   .NAME.meshhier-part                      beside any other file that is written, until it is whole
 //   .NAME.meshhier-scratch                   beside it, while it is made
 //   .NAME.meshhier-lock                      held by who makes it

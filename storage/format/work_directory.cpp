@@ -6,11 +6,11 @@
 #include "storage/format/layout.h"
 #include "storage/format/system_files.h"
 #include "storage/io/hash.h"
+#include "storage/io/patient_lock.h"
+#include "storage/io/system_failure.h"
 
-#include <chrono>
 #include <memory>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,6 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Whether it is what `meshhier view` makes, or left, in a hierarchy.
+bool is_of_view(const std::string& name) {
+  const auto known = leftover_name(name);
+  return known && known->kind == Leftover::unfinished;
+}
+
 /// Returns a file in the directory that no hierarchy, or stream, has, and no system leaves in
 /// folders; empty if there is none.
 std::string foreign_file(FileSystem& files, const Output& output) {
@@ -28,7 +34,7 @@ std::string foreign_file(FileSystem& files, const Output& output) {
       output.content == OutputContent::progressive_stream ? is_stream_file : is_hierarchy_file;
   for (const fs::path& file : files.list(output.path)) {
     const std::string name = file.lexically_relative(output.path).generic_string();
-    if (!is_own(name) && !is_system_file(name))
+    if (!is_own(name) && !is_system_file(name) && !is_of_view(name))
       return name;
   }
   return "";
@@ -122,49 +128,41 @@ std::uint64_t manifest_checksum(FileSystem& files, const fs::path& hierarchy) {
   return checksum(read_file(*manifest, manifest->size()));
 }
 
-/// Makes the directory and locks it; returns nothing if it is locked, or if another build that has
-/// just ended takes it away.
-std::unique_ptr<FileLock> try_to_take(FileSystem& files, const fs::path& work) {
+}  // namespace
+
+std::unique_ptr<FileLock> take_work(FileSystem& files, const fs::path& work) {
   files.make_directories(work);
   try {
     return files.try_lock(lock_path(work));
-  } catch (const Error&) {
-    if (files.exists(work))
-      throw;
+  } catch (const NotThere&) {
     return nullptr;
   }
 }
 
-/// Locks the directory, waiting a while: a process that was killed holds its lock until the disk
-/// has done what it was asked for.
-std::unique_ptr<FileLock> take_patiently(FileSystem& files, const Output& output, bool replace) {
-  constexpr int kTries = 60;
-  constexpr std::chrono::milliseconds kPause(50);
-  const fs::path work = work_path(output.path);
-  for (int i = 0; i < kTries; ++i) {
-    if (std::unique_ptr<FileLock> lock = try_to_take(files, work))
-      return lock;
-    std::this_thread::sleep_for(kPause);
-    check_output(files, output, replace);
+void remove_work(FileSystem& files, const fs::path& work, std::unique_ptr<FileLock> lock) {
+  for (const fs::path& child : files.children(work)) {
+    if (child != lock_path(work))
+      files.remove_all(child);
   }
-  return nullptr;
+  lock.reset();  // its file goes with it; who comes now makes another
+  files.remove_if_empty(work);
 }
-
-}  // namespace
 
 WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
     : files_(files), output_(std::move(output)), path_(work_path(output_.path)), replace_(replace) {
-  check_output(files_, output_, replace_);
   for (auto parent = output_.path.parent_path(); !parent.empty() && !files_.exists(parent);
        parent = parent.parent_path()) {
-    made_parent_ = parent;
+    made_parents_.push_back(parent);
   }
   if (files_.is_link(path_)) {
     throw Error(ErrorCode::io,
                 fmt::format("{} is a link, and temporary files of the build go there; remove it",
                             path_.string()));
   }
-  lock_ = take_patiently(files_, output_, replace_);
+  lock_ = lock_patiently([&] {
+    check_output(files_, output_, replace_);
+    return take_work(files_, path_);
+  });
   if (!lock_) {
     throw Error(ErrorCode::locked,
                 fmt::format("another build of {} is at work", output_.path.string()));
@@ -204,9 +202,11 @@ void WorkDirectory::remove_rest() {
     files_.remove_all(packed());
     return;
   }
-  files_.remove_all(path_);  // while it is locked: who comes now finds no lock, and makes another
-  if (!published_ && !made_parent_.empty() && files_.list(made_parent_).empty())
-    files_.remove_all(made_parent_);
+  remove_work(files_, path_, std::move(lock_));
+  if (published_)
+    return;
+  for (const fs::path& parent : made_parents_)
+    files_.remove_if_empty(parent);
 }
 
 std::filesystem::path WorkDirectory::built() const {
@@ -247,7 +247,10 @@ void WorkDirectory::publish() {
 }
 
 void WorkDirectory::give_name(const fs::path& from) {
-  files_.rename(from, output_.path);
+  if (!files_.rename_new(from, output_.path)) {
+    throw Error(ErrorCode::exists, fmt::format("{} appeared during the build; --force replaces it",
+                                               output_.path.string()));
+  }
   try {
     sync_names();
   } catch (const Error&) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace meshhier::storage {
 
@@ -49,6 +50,15 @@ void require_outside(FileSystem& files, const std::filesystem::path& output);
 /// to be there.
 bool check_output(FileSystem& files, const Output& output, bool replace,
                   const char* state = "is already there");
+
+/// Makes a work directory if need be and locks it; returns nothing if it is locked, or if somebody
+/// removes it at that moment. Throws Error(io).
+std::unique_ptr<FileLock> take_work(FileSystem& files, const std::filesystem::path& work);
+
+/// Removes a work directory that the caller has locked, and lets go of the lock. A build that takes
+/// the directory at that moment keeps it. Throws Error(io).
+void remove_work(FileSystem& files, const std::filesystem::path& work,
+                 std::unique_ptr<FileLock> lock);
 
 /// A locked work directory: no other process builds the output meanwhile. One thread at a time may
 /// use it; `files` must outlive it.
@@ -103,8 +113,8 @@ class WorkDirectory {
   FileSystem& files_;
   Output output_;
   std::filesystem::path path_;
-  std::filesystem::path
-      made_parent_;  ///< the topmost directory above the output that was not there before
+  /// The directories above the output that were not there before, the lowest first.
+  std::vector<std::filesystem::path> made_parents_;
   std::unique_ptr<FileLock> lock_;
   bool replace_;
   bool is_shared_ = false;

@@ -43,6 +43,8 @@ void fail_system(const char* action, const std::filesystem::path& path, int erro
                                           std::strerror(error), hint_at(path, error));
   if (error == EMFILE || error == ENFILE || error == ENOMEM)
     throw Busy(message);
+  if (error == ENOENT)
+    throw NotThere(message);
   throw Error(ErrorCode::io, message);
 }
 
@@ -78,14 +80,38 @@ bool is_held(int descriptor) {
   return false;
 }
 
-/// std::filesystem::weakly_canonical(), again where a part of the path goes while it is looked at.
-std::filesystem::path without_links(const std::filesystem::path& path, std::error_code& error) {
+/// Does again what fails because a part of a path goes meanwhile. Returns the last failure.
+template <class Step>
+std::error_code do_though_parts_go(const Step& step) {
   constexpr int kTries = 1000;
-  for (int i = 1;; ++i) {
-    std::filesystem::path found = std::filesystem::weakly_canonical(path, error);
-    if (error != std::errc::no_such_file_or_directory || i == kTries)
-      return found;
+  std::error_code error;
+  for (int i = 0; i < kTries; ++i) {
+    error.clear();
+    step(error);
+    if (error != std::errc::no_such_file_or_directory)
+      break;
   }
+  return error;
+}
+
+/// As FileSystem::canonical().
+std::filesystem::path place_of(const std::filesystem::path& path, std::error_code& error) {
+  constexpr int kMostLinks = 40;  // as many as the system follows
+  std::filesystem::path result = std::filesystem::absolute(path, error);
+  for (int i = 0; i < kMostLinks && !error; ++i) {
+    result = std::filesystem::weakly_canonical(result, error);
+    std::error_code ignored;
+    if (error || !std::filesystem::is_symlink(result, ignored))
+      break;  // a path that is still a link leads to nothing
+    result = result.parent_path() / std::filesystem::read_symlink(result, error);
+  }
+  return result;
+}
+
+/// Whether it is a directory itself, and no link to one.
+bool is_own_directory(const std::filesystem::directory_entry& entry) {
+  std::error_code ignored;
+  return entry.symlink_status(ignored).type() == std::filesystem::file_type::directory;
 }
 
 /// Gives `by` the mode of the regular file that it will replace; where that fails, it keeps its
@@ -210,15 +236,9 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
   }
 
   std::filesystem::path canonical(const std::filesystem::path& path) override {
-    constexpr int kMostLinks = 40;  // as many as the system follows
-    std::error_code error;
-    std::filesystem::path result = std::filesystem::absolute(path, error);
-    for (int i = 0; i < kMostLinks && !error; ++i) {
-      result = without_links(result, error);
-      if (error || !is_link(result))
-        break;  // a path that is still a link leads to nothing
-      result = result.parent_path() / std::filesystem::read_symlink(result, error);
-    }
+    std::filesystem::path result;
+    const std::error_code error =
+        do_though_parts_go([&](std::error_code& failure) { result = place_of(path, failure); });
     const FileKind found = error ? kind(path) : FileKind::none;
     if (found != FileKind::none && found != FileKind::directory)
       return std::filesystem::absolute(path);  // a pipe, to which /dev/stdin leads by no path
@@ -228,20 +248,18 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
   }
 
   std::vector<std::filesystem::path> list(const std::filesystem::path& directory) override {
-    std::vector<std::filesystem::path> found;
-    std::error_code error;
-    std::filesystem::recursive_directory_iterator entry(directory, error);
-    for (; !error && entry != std::filesystem::recursive_directory_iterator();
-         entry.increment(error)) {
-      const bool directory_itself =
-          entry->symlink_status(error).type() == std::filesystem::file_type::directory;
-      if (error)
-        break;
-      if (!directory_itself)
-        found.push_back(entry->path());
+    std::vector<std::filesystem::path> found, left{directory};
+    while (!left.empty()) {
+      const std::filesystem::path at = std::move(left.back());
+      left.pop_back();
+      std::error_code error;
+      std::filesystem::directory_iterator entry(at, error);
+      for (; !error && entry != std::filesystem::directory_iterator(); entry.increment(error))
+        (is_own_directory(*entry) ? left : found).push_back(entry->path());
+      const bool has_gone = error == std::errc::no_such_file_or_directory && at != directory;
+      if (error && !has_gone)
+        fail_system("list", directory, error.value());
     }
-    if (error)
-      fail_system("list", directory, error.value());
     std::sort(found.begin(), found.end());
     return found;
   }
@@ -259,8 +277,8 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
   }
 
   void make_directories(const std::filesystem::path& path) override {
-    std::error_code error;
-    std::filesystem::create_directories(path, error);
+    const std::error_code error = do_though_parts_go(
+        [&](std::error_code& failure) { std::filesystem::create_directories(path, failure); });
     if (error)
       fail_system("make the directory", path, error.value());
   }
@@ -270,6 +288,11 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
     std::filesystem::remove_all(path, error);
     if (error)
       fail_system("remove", path, error.value());
+  }
+
+  void remove_if_empty(const std::filesystem::path& directory) override {
+    if (::rmdir(directory.c_str()) != 0 && errno != ENOTEMPTY && errno != EEXIST && errno != ENOENT)
+      fail_system("remove", directory, errno);
   }
 
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override {
@@ -471,11 +494,19 @@ std::unique_ptr<FileSystem> make_posix_file_system(const InputRule& input) {
   return std::make_unique<GuardedFileSystem>(input.within);
 }
 
-std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& directory) {
-  std::uint64_t bytes = 0;
-  for (const std::filesystem::path& file : files.list(directory))
-    bytes += files.identity(file).bytes;
-  return bytes;
+std::uint64_t bytes_at(FileSystem& files, const std::filesystem::path& path) {
+  try {
+    if (files.is_link(path))
+      return 0;
+    if (!files.is_directory(path))
+      return files.identity(path).bytes;
+    std::uint64_t bytes = 0;
+    for (const std::filesystem::path& file : files.list(path))
+      bytes += bytes_at(files, file);
+    return bytes;
+  } catch (const NotThere&) {
+    return 0;
+  }
 }
 
 std::vector<std::byte> read_file(const File& file, std::uint64_t limit_bytes) {

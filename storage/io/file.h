@@ -139,8 +139,8 @@ struct IoCounters {
 };
 
 /// Opens files and changes directories. Thread-safe. Every failure throws Error(io) with path and
-/// cause, the subclass Busy (system_failure.h) if it may pass; where a method says so, it is a
-/// value. Links are followed unless a method says otherwise.
+/// cause, one of the subclasses Busy and NotThere (system_failure.h) where they fit; where a method
+/// says so, it is a value. Links are followed unless a method says otherwise.
 class FileSystem {
  public:
   virtual ~FileSystem() = default;
@@ -181,7 +181,7 @@ class FileSystem {
   /// the path that it leads to.
   virtual std::filesystem::path canonical(const std::filesystem::path& path) = 0;
   /// Returns everything below `directory`, at any depth, that is no directory; links as themselves;
-  /// ascending.
+  /// ascending. What others make or remove meanwhile may be among it.
   virtual std::vector<std::filesystem::path> list(const std::filesystem::path& directory) = 0;
   /// Whether list() and children() can tell what is in a directory; if not, they throw.
   virtual bool can_list(const std::filesystem::path& /*directory*/) { return true; }
@@ -191,6 +191,8 @@ class FileSystem {
   virtual void make_directories(const std::filesystem::path& path) = 0;
   /// Removes a file or a whole tree, a link as itself; nothing happens if it is not there.
   virtual void remove_all(const std::filesystem::path& path) = 0;
+  /// Removes a directory if it is empty at that moment: nothing that others make in it goes.
+  virtual void remove_if_empty(const std::filesystem::path& directory) = 0;
   /// Renames a file or directory at one moment. An existing file of that name is replaced; the new
   /// one gets its access rights where the system allows that.
   virtual void rename(const std::filesystem::path& from, const std::filesystem::path& to) = 0;
@@ -236,8 +238,9 @@ struct InputRule {
 /// say that it is not there.
 std::unique_ptr<FileSystem> make_posix_file_system(const InputRule& input = {});
 
-/// Returns the bytes of all files below `directory`. Throws Error(io).
-std::uint64_t bytes_below(FileSystem& files, const std::filesystem::path& directory);
+/// Returns the bytes of a file, or of all below a directory; links, and what is not there or goes
+/// meanwhile, have none. Throws Error(io).
+std::uint64_t bytes_at(FileSystem& files, const std::filesystem::path& path);
 
 /// Returns a whole file. `limit_bytes` guards what is allocated: a larger file throws
 /// Error(corrupt). Throws Error(io) if it cannot be read.

@@ -57,6 +57,9 @@ class ForwardingFiles : public FileSystem {
     others_.make_directories(path);
   }
   void remove_all(const std::filesystem::path& path) override { others_.remove_all(path); }
+  void remove_if_empty(const std::filesystem::path& directory) override {
+    others_.remove_if_empty(directory);
+  }
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override {
     others_.rename(from, to);
   }

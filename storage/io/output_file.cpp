@@ -2,6 +2,7 @@
 
 #include "base/error.h"
 #include "storage/io/paths.h"
+#include "storage/io/patient_lock.h"
 #include "storage/io/process.h"
 
 #include <string>
@@ -129,6 +130,17 @@ fs::path output_lock_path(const fs::path& file) {
   return file.parent_path() / fmt::format(".{}.meshhier-lock", file.filename().string());
 }
 
+std::unique_ptr<FileLock> lock_output(FileSystem& files, const fs::path& output,
+                                      const fs::path& named, const std::function<void()>& check) {
+  auto lock = lock_patiently([&] {
+    check();
+    return files.try_lock(output_lock_path(output));
+  });
+  if (!lock)
+    throw Error(ErrorCode::locked, fmt::format("another command is writing {}", named.string()));
+  return lock;
+}
+
 OutputFile::OutputFile(FileSystem& files, const OutputRequest& request,
                        const std::function<void()>& check)
     : files_(files), check_(check), replace_(request.replace), is_own_name_(request.is_own_name) {
@@ -174,12 +186,10 @@ void OutputFile::open_regular(const OutputRequest& request) {
   for (const fs::path& own :
        {unfinished_path(target), scratch_path(target), output_lock_path(target)})
     require_apart(files_, own, request.inputs);
-  lock_ = files_.try_lock(output_lock_path(target));
-  if (!lock_) {
-    throw Error(ErrorCode::locked,
-                fmt::format("another command is writing {}", request.path.string()));
-  }
+  lock_ = lock_output(files_, target, request.path, check_);
   target_ = target;
+  if (files_.exists(target_))
+    require_replaceable();
   temporary_ = unfinished_path(target);
   scratch_ = scratch_path(target);
   files_.remove_all(temporary_);  // a killed command may have left it

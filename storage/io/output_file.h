@@ -38,6 +38,12 @@ std::filesystem::path unfinished_path(const std::filesystem::path& file);
 std::filesystem::path scratch_path(const std::filesystem::path& file);
 std::filesystem::path output_lock_path(const std::filesystem::path& file);
 
+/// Locks output_lock_path(output), which `named` stands for in messages, and calls `check` while
+/// another command holds it. Throws Error(locked) if that does not end within 3 s; Error(io).
+std::unique_ptr<FileLock> lock_output(FileSystem& files, const std::filesystem::path& output,
+                                      const std::filesystem::path& named,
+                                      const std::function<void()>& check);
+
 /// A regular file is there complete or not at all: it gets its name when it is published. A FIFO or
 /// a character device, such as standard output, takes the bytes as they come. Nothing else is
 /// written to. One thread at a time may use an OutputFile; `files` must outlive it.
@@ -45,9 +51,9 @@ class OutputFile {
  public:
   /// Refuses now what can be refused before the work: throws Error(usage) if the path is no file's,
   /// and as require_apart(); Error(exists) if there is a file that is not to be replaced;
-  /// Error(locked) if another process is writing it; Error(io) if it cannot be written. `check` is
-  /// called every 50 ms while a stream's reader is waited for, in writes too, and in publish(); it
-  /// may throw.
+  /// Error(locked) if another process is writing it, and does not end within 3 s; Error(io) if it
+  /// cannot be written. `check` is called every 50 ms while that, or a stream's reader, is waited
+  /// for, in writes too, and in publish(); it may throw.
   OutputFile(
       FileSystem& files, const OutputRequest& request, const std::function<void()>& check = [] {});
   OutputFile(const OutputFile&) = delete;

@@ -199,6 +199,11 @@ void FaultyFileSystem::remove_all(const std::filesystem::path& path) {
   real_->remove_all(path);
 }
 
+void FaultyFileSystem::remove_if_empty(const std::filesystem::path& directory) {
+  strike(Call::remove_all, directory);
+  real_->remove_if_empty(directory);
+}
+
 void FaultyFileSystem::rename(const std::filesystem::path& from, const std::filesystem::path& to) {
   strike(Call::rename, to);
   real_->rename(from, to);

@@ -1,8 +1,9 @@
 #include "tests/support/memory_files.h"
 
-#include "base/error.h"
+#include "storage/io/system_failure.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <string>
 #include <utility>
 
@@ -10,10 +11,6 @@ namespace meshhier::tests {
 namespace {
 
 namespace fs = std::filesystem;
-
-[[noreturn]] void fail(const char* action, const fs::path& path, const char* cause) {
-  throw Error(ErrorCode::io, std::string("cannot ") + action + " " + path.string() + ": " + cause);
-}
 
 /// Returns whether `path` is below `directory`.
 bool is_below(const fs::path& path, const fs::path& directory) {
@@ -67,14 +64,14 @@ std::unique_ptr<storage::File> MemoryFiles::open(const fs::path& path) {
   const std::lock_guard lock(mutex_);
   const auto found = files_.find(path.lexically_normal());
   if (found == files_.end())
-    fail("open", path, has_directory(path) ? "Is a directory" : "No such file or directory");
+    storage::fail_system("open", path, has_directory(path) ? EISDIR : ENOENT);
   return std::make_unique<MemoryFile>(path, found->second);
 }
 
 std::unique_ptr<storage::File> MemoryFiles::create(const fs::path& path) {
   const std::lock_guard lock(mutex_);
   if (has_directory(path))
-    fail("create", path, "Is a directory");
+    storage::fail_system("create", path, EISDIR);
   const auto content = std::make_shared<Content>();
   files_[path.lexically_normal()] = content;
   return std::make_unique<MemoryFile>(path, content);
@@ -157,7 +154,7 @@ void MemoryFiles::rename(const fs::path& from, const fs::path& to) {
   const std::lock_guard lock(mutex_);
   const fs::path old_name = from.lexically_normal(), new_name = to.lexically_normal();
   if (!files_.contains(old_name) && !has_directory(old_name))
-    fail("rename to", to, "No such file or directory");
+    storage::fail_system("rename to", to, ENOENT);
   const auto is_moved = [&](const fs::path& path) {
     return path == old_name || is_below(path, old_name);
   };

@@ -40,6 +40,10 @@ class MemoryFiles : public storage::FileSystem {
   std::vector<std::filesystem::path> children(const std::filesystem::path& directory) override;
   void make_directories(const std::filesystem::path& path) override;
   void remove_all(const std::filesystem::path& path) override;
+  void remove_if_empty(const std::filesystem::path& directory) override {
+    if (list(directory).empty())
+      remove_all(directory);
+  }
   void rename(const std::filesystem::path& from, const std::filesystem::path& to) override;
   bool rename_new(const std::filesystem::path& from, const std::filesystem::path& to) override;
   bool exchange(const std::filesystem::path&, const std::filesystem::path&) override {

@@ -2,6 +2,8 @@
 
 #include "base/error.h"
 #include "storage/format/layout.h"
+#include "storage/io/forwarding_files.h"
+#include "tests/support/beside.h"
 #include "tests/support/faulty_file_system.h"
 
 #include <atomic>
@@ -9,6 +11,7 @@
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -410,6 +413,86 @@ TEST_F(WorkDirectoryTest, CleaningUpThatFailsDoesNotEndTheProgram) {
     files.fail(Call::remove_all, 1, 1000);
   }
   EXPECT_THAT(names(), ElementsAre(work_path(output_).filename().string()));
+}
+
+// Where each removes what it has made, no one's files go with another's.
+TEST_F(WorkDirectoryTest, WhoTakesADirectoryThatAnotherLeavesKeepsWhatIsHis) {
+  const auto path = work_path(output_);
+  const auto take_and_leave = [&] {
+    auto lock = take_work(*files_, path);
+    if (!lock)
+      return true;
+    bool is_mine = true;
+    for (int file = 0; file < 20; ++file)
+      write_file(*files_, path / std::to_string(file), {});
+    for (int file = 0; file < 20; ++file)
+      is_mine = is_mine && files_->exists(path / std::to_string(file));
+    is_mine = is_mine && files_->is_locked(lock_path(path));
+    remove_work(*files_, path, std::move(lock));
+    return is_mine;
+  };
+  const auto often = [&] {
+    for (int i = 0; i < 2000; ++i) {
+      if (!take_and_leave())
+        return false;
+    }
+    return true;
+  };
+  EXPECT_TRUE(tests::do_beside(often, [&] { EXPECT_TRUE(take_and_leave()); }));
+  EXPECT_THAT(names(), IsEmpty());
+}
+
+TEST_F(WorkDirectoryTest, ABuildThatGivesUpLeavesTheFolderToOnesThatBeginThere) {
+  const auto folder = parent_ / "a" / "b";
+  {
+    const WorkDirectory work(*files_, folder / "x.hier", false);
+    files_->make_directories(work_path(folder / "y.hier"));
+  }
+  EXPECT_TRUE(std::filesystem::exists(work_path(folder / "y.hier")));
+  std::filesystem::remove_all(parent_ / "a");
+  { const WorkDirectory work(*files_, folder / "x.hier", false); }
+  EXPECT_THAT(names(), IsEmpty()) << "nobody else was there";
+}
+
+TEST_F(WorkDirectoryTest, WhatAppearsAtTheLastMomentIsNotReplaced) {
+  /// Another program puts a file there just before it gets its name.
+  class Late final : public ForwardingFiles {
+   public:
+    Late(FileSystem& others, std::filesystem::path place)
+        : ForwardingFiles(others), place_(std::move(place)) {}
+    bool exists(const std::filesystem::path& path) override {
+      const bool is_there = ForwardingFiles::exists(path);
+      if (is_late && path == place_ && !is_there)
+        write_file(others(), path, {});
+      return is_there;
+    }
+    bool is_late = false;
+
+   private:
+    std::filesystem::path place_;
+  };
+  output_ = parent_ / "x.3tz";
+  Late late(*files_, output_);
+  {
+    WorkDirectory work(late, {output_, Container::archive}, false);
+    write(work.packed(), "archive");
+    late.is_late = true;
+    expect_error(ErrorCode::exists, "appeared", [&] { work.publish(); });
+  }
+  EXPECT_EQ(text_of(output_), "");
+}
+
+TEST_F(WorkDirectoryTest, WhatAViewLeavesInAHierarchyIsReplacedWithIt) {
+  put_hierarchy(output_, "old");
+  write(output_lock_path(manifest_path(output_)), "");
+  write(unfinished_path(manifest_path(output_)), "half a manifest");
+  {
+    WorkDirectory work(*files_, output_, true);
+    put_hierarchy(work.built(), "new");
+    work.publish();
+  }
+  EXPECT_EQ(hierarchy_at(output_), "new");
+  EXPECT_FALSE(std::filesystem::exists(unfinished_path(manifest_path(output_))));
 }
 
 class EveryFault : public WorkDirectoryTest, public testing::WithParamInterface<bool> {

@@ -1,6 +1,7 @@
 #include "storage/io/file.h"
 
 #include "base/error.h"
+#include "tests/support/beside.h"
 #include "tests/support/faulty_file_system.h"
 #include "tests/support/pattern.h"
 
@@ -413,6 +414,51 @@ TEST_F(FileTest, EveryFileBelowADirectoryIsListedInOrder) {
   EXPECT_EQ(files_->list(top), expected);
   EXPECT_TRUE(files_->list(top / "b" / "empty").empty());
   EXPECT_EQ(error_of([&] { (void)files_->list(top / "missing"); }).code(), ErrorCode::io);
+}
+
+TEST_F(FileTest, WhatGoesWhileItIsLookedAtIsNoError) {
+  const auto top = directory_ / "top", deep = top / "a" / "b" / "c";
+  files_->make_directories(top);
+  write_file(*files_, top / "stays", pattern(3));
+  const auto come_and_go = [&] {
+    for (int i = 0; i < 3000; ++i) {
+      files_->make_directories(deep);
+      write_file(*files_, deep / "file", pattern(5));
+      std::filesystem::create_directory_symlink(deep, top / "link");
+      std::filesystem::remove(top / "link");
+      files_->remove_all(top / "a");
+    }
+    return true;
+  };
+  EXPECT_TRUE(tests::do_beside(come_and_go, [&] {
+    EXPECT_THAT(files_->list(top), testing::Contains(top / "stays"));
+    EXPECT_GE(bytes_at(*files_, top), 3U);
+    EXPECT_LE(bytes_at(*files_, deep / "file"), 5U);
+    static_cast<void>(files_->canonical(top / "link" / "file"));
+  }));
+}
+
+TEST_F(FileTest, DirectoriesAreMadeWhileOthersRemoveThem) {
+  const auto top = directory_ / "a", deep = top / "b" / "c" / "d";
+  const auto come_and_go = [&] {
+    for (int i = 0; i < 5000; ++i) {
+      files_->make_directories(deep);
+      for (auto path = deep; path != directory_; path = path.parent_path())
+        files_->remove_if_empty(path);
+    }
+    return true;
+  };
+  EXPECT_TRUE(tests::do_beside(come_and_go, [&] { files_->make_directories(deep); }));
+}
+
+TEST_F(FileTest, OnlyAnEmptyDirectoryIsRemovedIfItIsEmpty) {
+  files_->make_directories(directory_ / "a" / "b");
+  files_->remove_if_empty(directory_ / "a");
+  EXPECT_TRUE(files_->exists(directory_ / "a" / "b"));
+  files_->remove_if_empty(directory_ / "a" / "b");
+  files_->remove_if_empty(directory_ / "a");
+  EXPECT_FALSE(files_->exists(directory_ / "a"));
+  files_->remove_if_empty(directory_ / "a");
 }
 
 TEST_F(FileTest, FreeBytesAreThoseOfTheDisk) {

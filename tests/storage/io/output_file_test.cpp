@@ -5,6 +5,7 @@
 #include "tests/support/faulty_file_system.h"
 
 #include <array>
+#include <chrono>
 #include <climits>
 #include <fstream>
 #include <iterator>
@@ -263,6 +264,19 @@ TEST_F(OutputFileTest, OneWriterAtATime) {
   EXPECT_THAT(message_, HasSubstr("another command"));
   first.publish(bytes_of("of the first"));
   EXPECT_EQ(text(), "of the first");
+}
+
+TEST_F(OutputFileTest, AWriterThatIsAboutToEndIsWaitedFor) {
+  auto lock = files_.try_lock(output_lock_path(path_));
+  std::thread other([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    put(path_, "of another");
+    lock.reset();
+  });
+  EXPECT_EQ(refusal({path_}), ErrorCode::exists) << "it is there by now";
+  other.join();
+  EXPECT_EQ(text(), "of another");
+  EXPECT_EQ(refusal({path_, true}), std::nullopt);
 }
 
 TEST_F(OutputFileTest, AFifoTakesTheBytesAndStays) {

@@ -4,13 +4,14 @@
 #include "storage/io/file.h"
 
 #include <filesystem>
+#include <memory>
 
-namespace meshhier::exporting {
+namespace meshhier::storage {
 
 class WorkFolder {
  public:
-  /// Makes it. Throws Error(io).
-  WorkFolder(storage::FileSystem& files, const std::filesystem::path& output);
+  /// Makes and locks it. Throws Error(io).
+  WorkFolder(FileSystem& files, const std::filesystem::path& output);
   WorkFolder(const WorkFolder&) = delete;
   WorkFolder& operator=(const WorkFolder&) = delete;
   /// Removes it with all that is in it.
@@ -19,8 +20,9 @@ class WorkFolder {
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  storage::FileSystem& files_;
+  FileSystem& files_;
   std::filesystem::path path_;
+  std::unique_ptr<FileLock> lock_;
 };
 
-}  // namespace meshhier::exporting
+}  // namespace meshhier::storage
