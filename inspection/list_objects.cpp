@@ -4,6 +4,7 @@
 #include "base/utf8.h"
 #include "export/asked_objects.h"
 #include "storage/format/archive_files.h"
+#include "storage/format/build_name.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
 #include "storage/format/object_table.h"
@@ -84,8 +85,10 @@ std::vector<std::uint32_t> found_objects(const storage::HierarchyReader& reader,
     throw Error(ErrorCode::usage, "--find: give a word, as 'church mar': \"" +
                                       plain_text(text, kMostShownBytes) + "\" has none");
   if (const auto& words = reader.manifest().objects->words) {
-    const auto path = storage::object_words_path(reader.directory());
-    return storage::ObjectWords(files.open(path), table.size(), &*words).find(sound);
+    return storage::of_one_build(files, reader.directory(), reader.manifest(), [&] {
+      const auto path = storage::object_words_path(reader.directory());
+      return storage::ObjectWords(files.open(path), table.size(), &*words).find(sound);
+    });
   }
   std::vector<std::uint32_t> found;
   table.for_each([&](std::uint32_t object, const ObjectRow& row) {

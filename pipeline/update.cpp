@@ -11,6 +11,7 @@
 #include "storage/format/noted_files.h"
 #include "storage/format/work_directory.h"
 #include "storage/io/json_text.h"
+#include "storage/io/system_failure.h"
 
 #include <optional>
 #include <set>
@@ -153,9 +154,12 @@ std::optional<storage::FileIdentity> state_of_output(const config::Config& confi
                                                      storage::FileSystem& files) {
   const fs::path file =
       files.is_directory(config.output) ? storage::manifest_path(config.output) : config.output;
-  if (files.kind(file) != storage::FileKind::regular)
-    return std::nullopt;
-  return files.identity(file);
+  try {
+    if (files.kind(file) == storage::FileKind::regular)
+      return files.identity(file);
+  } catch (const storage::NotThere&) {  // it is being replaced
+  }
+  return std::nullopt;
 }
 
 std::string reason_to_build(const config::Config& config, const fs::path& named,

@@ -381,6 +381,7 @@ void Watch::settle(const std::string& name, const BuildTarget& target, const Inp
     return;
   if (outcome.code == 0)
     return settle_built(name, target, version, outcome.warnings);
+  look();  // the file may be gone by now, or be another one
   if (version_of(name) == version && outcome.code != kExists && outcome.code != kLocked)
     return fail(name, outcome.message, outcome.code);
   tell_(LogLevel::info, fmt::format("{}: {}", name, outcome.message));

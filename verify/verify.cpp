@@ -67,6 +67,8 @@ std::optional<storage::HierarchyReader> open_hierarchy(storage::FileSystem& file
                                                        ProblemList& problems) {
   try {
     return std::optional<storage::HierarchyReader>(std::in_place, files, directory);
+  } catch (const storage::Replaced&) {
+    throw;
   } catch (const Error& error) {
     if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io)
       throw;
@@ -158,8 +160,10 @@ VerifyReport verify_hierarchy(storage::FileSystem& files, const fs::path& direct
       storage::MemoryPool pool(options.memory_budget / 8);
       storage::ScratchFile scratch(files, scratch_path(files, directory, options), pool);
       TileStore tiles(*reader, options.memory_budget / 4, problems);
-      verify_all({place->files(), *reader, options, scratch, tiles, problems, report.checks,
-                  progress, cancel});
+      storage::of_one_build(place->files(), directory, reader->manifest(), [&] {
+        verify_all({place->files(), *reader, options, scratch, tiles, problems, report.checks,
+                    progress, cancel});
+      });
       if (problems.count() > 0)
         storage::require_same_build(place->files(), directory, reader->manifest());
     }

@@ -147,7 +147,8 @@ bool has_foreign_files(const fs::path& work, storage::FileSystem& files) {
   return std::ranges::any_of(files.children(work), is_foreign);
 }
 
-/// Throws if files of others are in `work`, as `finish` removes all that is there.
+/// Throws if files of others are in `work`, as `finish` removes all that is there. Where another
+/// process has planned meanwhile, write_plan() looks at its plan.
 void check_work(const fs::path& work, const fs::path& output, storage::FileSystem& files) {
   const fs::path place = files.canonical(work);
   const fs::path made = files.canonical(output);
@@ -155,7 +156,8 @@ void check_work(const fs::path& work, const fs::path& output, storage::FileSyste
     throw Error(ErrorCode::usage, fmt::format("the directory {} and the output {} must lie apart",
                                               work.string(), output.string()));
   }
-  if (files.exists(work) && has_foreign_files(work, files)) {
+  if (files.exists(work) && has_foreign_files(work, files) &&
+      !files.exists(storage::task_plan_path(work))) {
     throw Error(ErrorCode::exists, fmt::format("{} is not empty, and has no plan; choose a new "
                                                "directory",
                                                work.string()));

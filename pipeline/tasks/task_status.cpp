@@ -10,6 +10,7 @@
 #include "pipeline/tasks/task_record.h"
 #include "storage/format/layout.h"
 #include "storage/format/segment.h"
+#include "storage/io/system_failure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -101,8 +102,11 @@ std::map<std::string, double> expected_seconds(const TaskPlan& plan, const Build
 }
 
 std::uint32_t count_attempts(const std::filesystem::path& work, storage::FileSystem& files) {
-  const std::filesystem::path attempts = storage::attempts_path(work);
-  return files.exists(attempts) ? static_cast<std::uint32_t>(files.children(attempts).size()) : 0;
+  try {
+    return static_cast<std::uint32_t>(files.children(storage::attempts_path(work)).size());
+  } catch (const storage::NotThere&) {  // `finish` has removed them
+    return 0;
+  }
 }
 
 }  // namespace

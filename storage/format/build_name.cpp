@@ -46,15 +46,17 @@ std::string build_name(const std::string& manifest_text) {
                               kNameDigits);
 }
 
+Replaced::Replaced(const std::filesystem::path& hierarchy)
+    : Error(ErrorCode::io,
+            fmt::format("{}: another hierarchy has taken its place while it was read; nothing is "
+                        "made of the two: run the command again",
+                        hierarchy.string())) {}
+
 void require_same_build(FileSystem& files, const std::filesystem::path& hierarchy,
                         const Manifest& opened) {
   const std::optional<Manifest> now = manifest_now(files, hierarchy);
-  if (now && !is_same_build(*now, opened)) {
-    throw Error(ErrorCode::io,
-                fmt::format("{}: another hierarchy has taken its place while it was read; nothing "
-                            "is made of the two: run the command again",
-                            hierarchy.string()));
-  }
+  if (now && !is_same_build(*now, opened))
+    throw Replaced(hierarchy);
 }
 
 }  // namespace meshhier::storage

@@ -169,8 +169,10 @@ std::unique_ptr<ObjectTable> HierarchyReader::open_objects() const {
                             "of",
                             directory_.string()));
   }
-  return std::make_unique<ObjectTable>(files_.open(objects_path(directory_)),
-                                       &manifest_.objects->table);
+  return of_one_build(files_, directory_, manifest_, [&] {
+    return std::make_unique<ObjectTable>(files_.open(objects_path(directory_)),
+                                         &manifest_.objects->table);
+  });
 }
 
 std::vector<std::byte> HierarchyReader::read_preview() const {

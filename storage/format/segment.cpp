@@ -5,6 +5,7 @@
 #include "storage/io/hash.h"
 #include "storage/io/json_text.h"
 #include "storage/io/little_endian.h"
+#include "storage/io/system_failure.h"
 
 #include <algorithm>
 #include <array>
@@ -61,10 +62,11 @@ void SegmentWriter::seal(File& file, std::uint64_t data_bytes) const {
 
 std::unique_ptr<Segment> Segment::open(FileSystem& files, const std::filesystem::path& work,
                                        const SegmentName& name) {
-  const std::filesystem::path path = segment_path(work, name);
-  if (!files.exists(path))
+  try {
+    return std::unique_ptr<Segment>(new Segment(files.open(segment_path(work, name)), name));
+  } catch (const NotThere&) {
     return nullptr;
-  return std::unique_ptr<Segment>(new Segment(files.open(path), name));
+  }
 }
 
 bool Segment::is_whole(FileSystem& files, const std::filesystem::path& work,

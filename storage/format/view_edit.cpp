@@ -10,6 +10,7 @@
 #include "storage/format/view_keys.h"
 #include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
+#include "storage/io/system_failure.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -81,11 +82,16 @@ std::string replace_view(FileSystem& files, const std::filesystem::path& hierarc
   OutputFile output(files, {path, true});
   const std::string text = read_sealed_text(*files.open(path));
   const std::string changed = with_view(text, view, path.string());
+  const Error is_another(ErrorCode::exists,
+                         fmt::format("{}: another build is there by now", hierarchy.string()));
   if (build && *build != build_name(text))
-    throw Error(ErrorCode::exists,
-                fmt::format("{}: another build is there by now", hierarchy.string()));
-  if (changed != text)
-    output.publish(std::as_bytes(std::span(changed)));
+    throw is_another;
+  try {
+    if (changed != text)
+      output.publish(std::as_bytes(std::span(changed)));
+  } catch (const NotThere&) {  // it took the file that was being written along
+    throw is_another;
+  }
   return build_name(changed);
 }
 

@@ -5,6 +5,7 @@
 #include "storage/format/input_note.h"
 #include "storage/format/layout.h"
 #include "storage/format/manifest.h"
+#include "storage/io/forwarding_files.h"
 #include "tests/support/meshes.h"
 #include "tests/support/quick_config.h"
 #include "tests/support/sample_hierarchy.h"
@@ -50,6 +51,23 @@ class UpdateTest : public testing::Test {
   BuildEnvironment environment_{files_, progress_, cancel_};
   config::Config config_;
 };
+
+TEST_F(UpdateTest, AnOutputThatGoesWhileItIsLookedAtIsNotThere) {
+  /// Removes a file as soon as it was looked at.
+  class Restless final : public storage::ForwardingFiles {
+   public:
+    using ForwardingFiles::ForwardingFiles;
+    storage::FileKind kind(const fs::path& path) override {
+      const storage::FileKind found = ForwardingFiles::kind(path);
+      if (found == storage::FileKind::regular)
+        fs::remove(path);
+      return found;
+    }
+  };
+  EXPECT_TRUE(state_of_output(config_, files_).has_value());
+  Restless restless(files_);
+  EXPECT_FALSE(state_of_output(config_, restless).has_value());
+}
 
 TEST_F(UpdateTest, AnotherVersionOfTheProgramIsAReason) {
   EXPECT_EQ(reason(), "");

@@ -1,13 +1,19 @@
 #include "server/view_requests.h"
 
+#include "base/error.h"
 #include "server/site.h"
+#include "storage/format/layout.h"
 #include "storage/format/manifest.h"
+#include "storage/format/view_edit.h"
+#include "storage/io/forwarding_files.h"
 #include "tests/server/served_folder.h"
 #include "tests/server/text_body.h"
 #include "tests/support/faulty_file_system.h"
 
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -66,6 +72,35 @@ TEST_F(ViewRequestsTest, GiveAHierarchyAnotherViewAndTakeItAway) {
   EXPECT_EQ(put(std::string(kPlain) + "?build=" + build, "{}").status, 200);
   EXPECT_EQ(tests::text_of(folder_.models() / "plain.hier/hierarchy.json"), before);
   EXPECT_EQ(put("/models/sub%20dir/zipped.hier/view", R"({"stretch": 2})").status, 200);
+}
+
+TEST_F(ViewRequestsTest, ABuildThatComesMeanwhileIsTold) {
+  /// Another build takes the hierarchy's place as soon as the manifest is opened.
+  class Replacing final : public storage::ForwardingFiles {
+   public:
+    Replacing(storage::FileSystem& others, fs::path hierarchy, fs::path aside)
+        : ForwardingFiles(others), hierarchy_(std::move(hierarchy)), aside_(std::move(aside)) {}
+    std::unique_ptr<storage::File> open(const fs::path& path) override {
+      auto file = ForwardingFiles::open(path);
+      fs::rename(hierarchy_, aside_);
+      fs::create_directory(hierarchy_);
+      fs::copy_file(storage::manifest_path(aside_), storage::manifest_path(hierarchy_));
+      return file;
+    }
+
+   private:
+    fs::path hierarchy_, aside_;
+  };
+  const fs::path hierarchy = folder_.models() / "plain.hier";
+  Replacing files(files_, hierarchy, folder_.path() / "aside");
+  ModelView view;
+  view.light = "raking";
+  try {
+    storage::replace_view(files, hierarchy, view);
+    ADD_FAILURE() << "it went with the old one";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::exists) << error.what();
+  }
 }
 
 TEST_F(ViewRequestsTest, RefuseWhatIsNoViewOrHasNoPlace) {

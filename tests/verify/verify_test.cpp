@@ -2,8 +2,10 @@
 
 #include "base/bounds.h"
 #include "base/error.h"
+#include "storage/format/build_name.h"
 #include "storage/format/hierarchy_reader.h"
 #include "storage/format/layout.h"
+#include "storage/io/forwarding_files.h"
 #include "tests/support/meshes.h"
 #include "tests/support/sample_hierarchy.h"
 
@@ -15,6 +17,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -77,6 +80,46 @@ class VerifyTest : public testing::Test {
   tests::TemporaryDirectory directory_;
   std::unique_ptr<storage::FileSystem> files_ = storage::make_posix_file_system();
 };
+
+/// Another build takes a hierarchy's place when its index is opened, or when it has been listed.
+class ReplacingFiles final : public storage::ForwardingFiles {
+ public:
+  enum class When { opened, listed };
+  ReplacingFiles(storage::FileSystem& others, When when, std::function<void()> replace)
+      : ForwardingFiles(others), when_(when), replace_(std::move(replace)) {}
+
+  std::unique_ptr<storage::File> open(const fs::path& path) override {
+    if (when_ == When::opened && path.filename() == storage::index_path({}))
+      replace_();
+    return ForwardingFiles::open(path);
+  }
+  std::vector<fs::path> children(const fs::path& directory) override {
+    std::vector<fs::path> found = ForwardingFiles::children(directory);
+    if (when_ == When::listed)
+      replace_();
+    return found;
+  }
+
+ private:
+  When when_;
+  std::function<void()> replace_;
+};
+
+TEST_F(VerifyTest, AHierarchyThatIsReplacedMeanwhileIsNotCalledDamaged) {
+  tests::Sample before = make(tests::sphere(2000), {16, 40, false, false, {}});
+  tests::Sample after = make(tests::sphere(500), {1, 40, false, false, {}});
+  const auto put = [&](tests::Sample& sample) {
+    fs::remove_all(hierarchy_path());
+    tests::write_sample(*files_, hierarchy_path(), sample);
+  };
+  for (const auto when : {ReplacingFiles::When::opened, ReplacingFiles::When::listed}) {
+    put(before);
+    ReplacingFiles files(*files_, when, [&] { put(after); });
+    execution::NoProgress progress;
+    EXPECT_THROW(verify_hierarchy(files, hierarchy_path(), {}, progress, execution::CancelToken()),
+                 storage::Replaced);
+  }
+}
 
 struct VerifiedShape {
   std::string name;

@@ -8,6 +8,7 @@
 #include "pipeline/tasks/task_status.h"
 #include "storage/format/layout.h"
 #include "storage/format/segment.h"
+#include "storage/io/forwarding_files.h"
 #include "storage/io/hash.h"
 #include "storage/io/process.h"
 #include "tests/support/faulty_file_system.h"
@@ -605,6 +606,30 @@ TEST_F(TasksTest, APlanIsMadeOnce) {
   EXPECT_THROW(plan(3), Error);
   EXPECT_EQ(read_task_plan(files_, work(), kProgram).config, first.config);
   EXPECT_EQ(read_task_plan(files_, work(), kProgram).fingerprint, first.fingerprint);
+}
+
+TEST_F(TasksTest, APlanThatAnotherMakesMeanwhileIsTheSame) {
+  /// Says once that there is no plan.
+  class Early final : public storage::ForwardingFiles {
+   public:
+    using ForwardingFiles::ForwardingFiles;
+    bool exists(const fs::path& path) override {
+      return ForwardingFiles::exists(path) &&
+             (path.filename() != storage::task_plan_path({}) || std::exchange(has_asked_, true));
+    }
+
+   private:
+    bool has_asked_ = false;
+  };
+  use_sphere();
+  const TaskPlan first = plan(2);
+  run("read");
+  execution::NoProgress progress;
+  const execution::CancelToken cancel;
+  Early files(files_);
+  EXPECT_EQ(
+      make_task_plan(config_, {work(), 2, false, kProgram}, {files, progress, cancel}).fingerprint,
+      first.fingerprint);
 }
 
 TEST_F(TasksTest, AnOutputIsReplacedOnlyIfThePlanSaysSo) {
