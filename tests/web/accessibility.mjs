@@ -12,7 +12,6 @@ import { withSite } from './site.mjs';
 const AXE = readFileSync(createRequire(import.meta.url).resolve('axe-core/axe.min.js'), 'utf8');
 const RULES = ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa', 'best-practice'];
 const WINDOW = { viewport: { width: 1100, height: 760 }, reducedMotion: 'reduce' };
-const PATIENCE = 120_000; // milliseconds
 const MOST_TABS = 60;
 const LEAST_PASSED = 15; // rules that apply at least
 const JOBS = [
@@ -90,7 +89,7 @@ async function checkGallery(browser, report, origin, colorScheme) {
 
 async function checkView(browser, report, origin, { name }, colorScheme) {
   const page = await open(browser, `${origin}/index.html#models/${name}.hier`, { colorScheme });
-  await page.waitForFunction(() => window.meshhier.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier.settled());
   await check(report, page, `view ${colorScheme}`);
   for (const button of await page.locator('button[aria-controls]').all()) {
     await button.click();

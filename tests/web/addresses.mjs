@@ -13,7 +13,6 @@ import { collectComplaints, inChromium, withoutRestDetail } from './browser.mjs'
 import { startServer } from './meshhier_server.mjs';
 import { serve } from './server.mjs';
 
-const PATIENCE = 120_000; // milliseconds
 const WINDOW = { viewport: { width: 800, height: 600 }, reducedMotion: 'reduce' };
 const ROOT = path.join(path.dirname(fileURLToPath(import.meta.url)), '../..');
 const DOCUMENTS = ['docs/serving.md', 'docs/command_line.md', 'docs/troubleshooting.md', 'viewer/README.md', 'README.md', 'viewer/page/words/en.ts'];
@@ -72,7 +71,7 @@ class Visits {
   async open(name, address, what = null) {
     const page = await this.page();
     await page.goto(address);
-    await page.waitForFunction(() => window.meshhier?.settled() || document.querySelector('.problem') || [...document.querySelectorAll('a.cell')].length > 0, null, { timeout: PATIENCE });
+    await page.waitForFunction(() => window.meshhier?.settled() || document.querySelector('.problem') || [...document.querySelectorAll('a.cell')].length > 0);
     const seen = await this.seen(page, what === 'story');
     const isRight = what === null ? seen.kind !== null : seen.kind === what || (what === 'model' && seen.kind === 'story');
     this.report.line(`address ${name}`, seen.messages === '' && isRight && page.complaints.length === 0, `${address}: ${seen.messages || seen.kind}; ${page.complaints.join('; ') || 'no complaints'}`);
@@ -84,7 +83,7 @@ class Visits {
     if (awaitsStory) {
       await page.locator('.story-card').getByRole('button').nth(2).or(page.locator('.problem')).first().waitFor();
       await page.locator('.story-mark').first().click();
-      await page.waitForFunction(() => document.querySelector('.story-picture')?.complete || document.querySelector('.story-body .tool-note'), null, { timeout: PATIENCE });
+      await page.waitForFunction(() => document.querySelector('.story-picture')?.complete || document.querySelector('.story-body .tool-note'));
     }
     await page.waitForTimeout(400); // a message may be late
     return page.evaluate(() => {
@@ -111,8 +110,8 @@ class Visits {
     await page.route(`**/${HOST_PAGE}`, (route) => route.fulfill({ contentType: 'text/html', body }));
     await page.goto(`${origin}/${HOST_PAGE}`);
     const frame = page.frames()[1];
-    if (frame) await frame.waitForFunction(() => window.meshhier?.settled() || document.querySelector('.problem'), null, { timeout: PATIENCE });
-    else await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled || !document.querySelector('meshhier-viewer').shadowRoot.querySelector('p').hidden, null, { timeout: PATIENCE });
+    if (frame) await frame.waitForFunction(() => window.meshhier?.settled() || document.querySelector('.problem'));
+    else await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled || !document.querySelector('meshhier-viewer').shadowRoot.querySelector('p').hidden);
     await page.waitForTimeout(400);
     const messages = frame
       ? await frame.evaluate(() => [...document.querySelectorAll('.problem')].map(({ innerText }) => innerText).join('; '))

@@ -6,14 +6,13 @@
 // MODELS: a directory with NAME.hier, of which ATTRIBUTE is a quantity. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { collectComplaints, decodePicture, inChromium, readHierarchy, SIZE } from './browser.mjs';
+import { collectComplaints, decodePicture, inChromium, readHierarchy, SIZE, until } from './browser.mjs';
 import { startServer } from './meshhier_server.mjs';
 import { serve } from './server.mjs';
 import { withSite } from './site.mjs';
 
 const HERE = path.dirname(fileURLToPath(import.meta.url));
 const ROOT = path.join(HERE, '../..');
-const PATIENCE = 120_000; // milliseconds
 const VIVID = 60; // a pixel's channels are so far apart
 const LEAST_VIVID = 0.02; // of the picture
 
@@ -32,7 +31,7 @@ async function openView(browser, address, complaints) {
   const page = await browser.newPage({ viewport: { width: SIZE, height: SIZE } });
   collectComplaints(page, complaints);
   await page.goto(address);
-  await page.waitForFunction(() => window.meshhier?.settled(), { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier?.settled());
   return page;
 }
 
@@ -64,7 +63,7 @@ async function checkForm(browser, report, address, attribute, complaints) {
   await page.getByRole('radio', { name: 'turbo' }).check({ force: true });
   await page.getByRole('spinbutton', { name: 'To', exact: true }).fill('0.125');
   await page.getByRole('spinbutton', { name: 'To', exact: true }).press('Enter');
-  await page.waitForFunction(() => /ramp=turbo/.test(location.hash) && /range=[^&]*,0\.125/.test(location.hash), { timeout: PATIENCE }).catch(() => undefined);
+  await page.waitForFunction(() => /ramp=turbo/.test(location.hash) && /range=[^&]*,0\.125/.test(location.hash)).catch(() => undefined);
   const link = await page.evaluate(() => location.hash);
   report.line('page legend', options.includes(attribute) && /ramp=turbo/.test(link) && /range=[^&]*,0\.125/.test(link), `${options.join(', ')}; ${link}`);
   await page.close();
@@ -82,15 +81,15 @@ async function checkCesium(browser, report, { decoder, meshhier, models, hierarc
     const page = await browser.newPage({ viewport: { width: SIZE, height: SIZE } });
     await page.goto(address + attribute);
     let vivid = 0;
-    for (const began = Date.now(); vivid < LEAST_VIVID && Date.now() - began < PATIENCE; ) {
-      await page.waitForTimeout(500);
+    await until(page, async () => {
       vivid = await vividOf(decoder, await page.screenshot({ path: path.join(pictures, 'attribute-cesium.png') }));
-    }
+      return vivid >= LEAST_VIVID;
+    });
     const message = await page.locator('#message').innerText();
     report.line('cesium by attribute', vivid >= LEAST_VIVID && message === '', `strong colours in ${(100 * vivid).toFixed(1)} % ${message}`);
     await page.goto(`${address}nothing`);
     const said = page.locator('#message', { hasText: `no attribute nothing, but ${attribute}` });
-    report.line('cesium without it', await said.waitFor({ timeout: PATIENCE }).then(() => true, () => false), await page.locator('#message').innerText());
+    report.line('cesium without it', await said.waitFor().then(() => true, () => false), await page.locator('#message').innerText());
     await page.close();
   } finally {
     await server.stop();

@@ -2,6 +2,7 @@
 import { existsSync, mkdirSync, readFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
+import { isDeepStrictEqual } from 'node:util';
 import { serve } from './server.mjs';
 
 export const SIZE = 512;
@@ -37,15 +38,36 @@ export function inTurn(all) {
   return SHARE ? all.filter((_, i) => i % TURNS === Number.parseInt(SHARE, 10) % TURNS) : all;
 }
 
-const MOST_WAIT = 120_000; // milliseconds
+/// Milliseconds that anything is waited for, on all pages. It ends a check whose outcome is clear; a slow machine needs less.
+export const PATIENCE = 240_000;
 
 /// Whether it comes to that.
 export async function until(page, holds) {
   for (const began = Date.now(); !(await holds()); ) {
-    if (Date.now() - began > MOST_WAIT) return false;
+    if (Date.now() - began > PATIENCE) return false;
     await page.waitForTimeout(20);
   }
   return true;
+}
+
+/// What `look` tells, as soon as it is twice the same with frames in between.
+export async function steady(page, look) {
+  let last = await look();
+  await until(page, async () => {
+    await frames(page);
+    const before = last;
+    last = await look();
+    return isDeepStrictEqual(before, last);
+  });
+  return last;
+}
+
+/// Some frames are drawn.
+export function frames(page, count = 3) {
+  return page.evaluate((left) => new Promise((done) => {
+    const next = () => (--left < 0 ? done() : requestAnimationFrame(next));
+    next();
+  }), count);
 }
 
 export function readHierarchy(directory) {
@@ -93,7 +115,7 @@ async function openPage(browser, url, errors) {
     if (reason !== 'net::ERR_ABORTED') errors.push(`${request.url()}: ${reason}`); // that is the page's own wish
   });
   await page.goto(url);
-  await page.waitForFunction(() => window.view !== undefined, null, { timeout: MOST_WAIT }).catch((error) => {
+  await page.waitForFunction(() => window.view !== undefined).catch((error) => {
     throw new Error(`${url} does not start: ${errors.join('; ') || error.message}`);
   });
   return page;
@@ -154,6 +176,17 @@ export async function withPage(browser, report, { viewer, name, directories }, s
   server.close();
 }
 
+/// Its pages wait so long for whatever they are asked.
+function withPatience(browser) {
+  const make = browser.newContext.bind(browser);
+  browser.newContext = async (options) => {
+    const context = await make(options);
+    context.setDefaultTimeout(PATIENCE);
+    return context;
+  };
+  return browser;
+}
+
 /// Runs `checks(browser, report)`. The exit code: 0: all is as it should be; 1: something is not;
 /// 77: the viewers or Chromium are not installed.
 export async function inChromium(pictures, checks) {
@@ -163,10 +196,11 @@ export async function inChromium(pictures, checks) {
     return 77;
   }
   mkdirSync(pictures, { recursive: true });
-  const browser = await chromium.launch({
+  const browser = withPatience(await chromium.launch({
     executablePath: CHROMIUM,
+    timeout: PATIENCE,
     args: ['--no-sandbox', '--js-flags=--expose-gc', '--enable-precise-memory-info', '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
-  });
+  }));
   const report = new Report();
   await checks(browser, report);
   await browser.close();

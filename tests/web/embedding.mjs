@@ -6,16 +6,15 @@
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Pictures go to the directory PICTURES. Exit code 2: wrong use; else
 // see browser.mjs.
 import path from 'node:path';
-import { addStyle, collectComplaints, inChromium, readHierarchy, comparePictures } from './browser.mjs';
+import { addStyle, collectComplaints, comparePictures, inChromium, readHierarchy, until } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WINDOW = { viewport: { width: 900, height: 640 }, reducedMotion: 'reduce' };
-const PATIENCE = 120_000; // milliseconds
 const HOST = 'host.html';
 const MOST_DIFFERENCE = 1.5; // of 255
 
 function settle(frame) {
-  return frame.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  return frame.waitForFunction(() => window.meshhier?.settled());
 }
 
 async function open(browser, address, complaints = []) {
@@ -81,7 +80,7 @@ async function checkFrame(browser, report, origin, { frame: code, camera }) {
 async function checkElement(browser, report, origin, { element: code, camera }, pictures) {
   const complaints = [];
   const page = await host(browser, origin, code, complaints);
-  await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled, null, { timeout: PATIENCE });
+  await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled);
   const before = await page.evaluate(() => document.querySelector('meshhier-viewer').camera);
   report.line('share element', before === [...camera.position, ...camera.target].join(), `from ${before}`);
   await page.screenshot({ path: path.join(pictures, 'element.png') });
@@ -89,8 +88,7 @@ async function checkElement(browser, report, origin, { element: code, camera }, 
   await page.keyboard.press('Tab');
   await page.keyboard.press('ArrowRight');
   await page.waitForFunction((one) => document.querySelector('meshhier-viewer').camera !== one, before);
-  await page.waitForTimeout(300);
-  report.line('share element keys', !empty.equals(await page.locator('meshhier-viewer').screenshot()), 'turn it');
+  report.line('share element keys', await until(page, async () => !empty.equals(await page.locator('meshhier-viewer').screenshot())), 'turn it');
   await page.evaluate(() => { document.querySelector('meshhier-viewer').src = 'nothing.hier'; });
   const alert = page.getByRole('alert');
   await alert.waitFor();
@@ -116,7 +114,7 @@ async function checkLight(browser, report, origin, { name }) {
   const { width, height } = WINDOW.viewport;
   const code = `<style>body { margin: 0 } h1 { display: none }</style><script type="module" src="${origin}/meshhier-viewer.js"></script><meshhier-viewer style="display: block; width: ${width}px; height: ${height}px" camera="${[...position, ...target]}" src="${origin}/models/${name}.hier"></meshhier-viewer>`;
   const page = await host(browser, origin, code, []);
-  await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled, null, { timeout: PATIENCE });
+  await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled);
   const inElement = await bareScreenshot(page, 'meshhier-viewer');
   const { mean, covered } = await comparePictures(page, inPage, inElement);
   report.line('one light', covered > 0.01 && mean <= MOST_DIFFERENCE, `the page and the element are ${mean.toFixed(2)} of 255 from each other where the model is`);
@@ -140,7 +138,7 @@ async function checkPlugin(browser, report, origin, { name }) {
       "document.querySelector('meshhier-viewer').registerPlugin(make)", () => document.querySelector('meshhier-viewer').view?.stats().settled, 'meshhier-viewer canvas'],
   ];
   for (const [what, page, register, settled, canvas] of hosts) {
-    await page.waitForFunction(settled, null, { timeout: PATIENCE });
+    await page.waitForFunction(settled);
     const before = await page.locator(canvas).screenshot();
     await page.evaluate(`(${STRANGER})((make) => ${register})`);
     await page.waitForFunction(() => window.strangerDrew > 0);

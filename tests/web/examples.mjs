@@ -8,7 +8,7 @@
 import { cpSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { collectComplaints, decodePicture, inChromium, SIZE } from './browser.mjs';
+import { collectComplaints, decodePicture, inChromium, SIZE, until } from './browser.mjs';
 import { startServer } from './meshhier_server.mjs';
 import { serve } from './server.mjs';
 
@@ -16,7 +16,6 @@ const HERE = path.dirname(fileURLToPath(import.meta.url));
 const ROOT = path.join(HERE, '../..');
 const PAGES = ['cesium', '3d-tiles-renderer', 'three', 'element', 'engine'];
 const DAMAGED = 'damaged.hier';
-const PATIENCE = 240_000; // milliseconds
 const BACKGROUND = [0x1c, 0x25, 0x30]; // of example.css
 /// The page that reads tiles itself, and takes them without meshopt alone.
 const OWN_READER = 'engine';
@@ -63,14 +62,14 @@ function measure(pixels) {
 
 /// The picture once it shows something and no longer changes.
 async function settledPicture(page, decoder) {
-  let last = null;
-  for (const began = Date.now(), same = { count: 0 }; Date.now() - began < PATIENCE; ) {
-    const picture = await page.screenshot();
-    same.count = last?.equals(picture) ? same.count + 1 : 0;
-    last = picture;
-    if (same.count >= 4 && measure(await decodePicture(decoder, picture)).covered > 0) break;
+  let [last, same] = [null, 0];
+  await until(page, async () => {
     await page.waitForTimeout(250);
-  }
+    const picture = await page.screenshot();
+    same = last?.equals(picture) ? same + 1 : 0;
+    last = picture;
+    return same >= 4 && measure(await decodePicture(decoder, picture)).covered > 0;
+  });
   return last;
 }
 
@@ -99,7 +98,7 @@ async function checkPicture(browser, report, { decoder, pages, models, pictures 
 async function checkMessage(browser, report, pages, viewer, [what, query, text]) {
   const page = await openPage(browser, `${pages}/examples/${viewer}.html${query}`, []);
   const message = page.locator('#message', { hasText: text });
-  const isSaid = await message.waitFor({ timeout: PATIENCE }).then(() => true, () => false);
+  const isSaid = await message.waitFor().then(() => true, () => false);
   report.line(`examples ${viewer} ${what}`, isSaid, await page.locator('#message').innerText());
   await page.close();
 }

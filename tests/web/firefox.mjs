@@ -9,11 +9,10 @@ import { existsSync, mkdirSync, mkdtempSync, rmSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { Report } from './browser.mjs';
+import { PATIENCE, Report } from './browser.mjs';
 import { startServer } from './meshhier_server.mjs';
 import { serve } from './server.mjs';
 
-const PATIENCE = 60_000; // milliseconds
 const FIREFOX = ['/usr/bin/firefox-esr', '/usr/bin/firefox'].find((file) => existsSync(file));
 const XVFB = '/usr/bin/Xvfb';
 
@@ -38,12 +37,13 @@ function startDisplay() {
 /// A page at rest: what it shows and complained about.
 async function open(browser, url) {
   const page = await browser.newPage();
+  page.setDefaultTimeout(PATIENCE);
   await page.setViewport({ width: 800, height: 600 });
   const complaints = [];
   page.on('console', (message) => message.type() === 'error' && complaints.push(message.text()));
   page.on('pageerror', (error) => complaints.push(error.message));
   await page.goto(url);
-  await page.waitForFunction(() => window.meshhier?.settled(), { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier?.settled());
   return { page, complaints, stats: await page.evaluate(() => window.meshhier.stats()) };
 }
 
@@ -100,7 +100,7 @@ mkdirSync(args[1], { recursive: true });
 const display = await startDisplay();
 const report = new Report();
 try {
-  const browser = await driver.launch({ browser: 'firefox', executablePath: FIREFOX, headless: false, env: { ...process.env, DISPLAY: display.name } });
+  const browser = await driver.launch({ browser: 'firefox', executablePath: FIREFOX, headless: false, timeout: PATIENCE, protocolTimeout: PATIENCE, env: { ...process.env, DISPLAY: display.name } });
   await checkAll(browser, report, args);
   await browser.close();
 } finally {

@@ -5,15 +5,15 @@
 // FOLDER: of hierarchies with previews, as many as a window shows. Times are told and decide nothing; requests do. Exit code 2:
 // wrong use; else see browser.mjs.
 import path from 'node:path';
-import { inChromium, SLOW_LINE } from './browser.mjs';
+import { inChromium, PATIENCE, SLOW_LINE } from './browser.mjs';
 import { startServer } from './meshhier_server.mjs';
 
 const SLOWDOWN = 4;
 const WINDOW = { viewport: { width: 1280, height: 900 }, reducedMotion: 'reduce' };
-const PATIENCE = 120_000; // milliseconds
 
 async function openSlowly(browser, url) {
   const page = await browser.newPage(WINDOW);
+  page.setDefaultTimeout(SLOWDOWN * PATIENCE);
   const session = await page.context().newCDPSession(page);
   await session.send('Network.enable');
   await session.send('Network.emulateNetworkConditions', SLOW_LINE);
@@ -52,7 +52,7 @@ async function check(browser, report, [meshhier, pictures, folder]) {
     const url = await server.url;
     const { models } = await (await fetch(new URL('models.json', url))).json();
     const page = await openSlowly(browser, url);
-    await page.waitForFunction(allShown, models.length, { timeout: PATIENCE, polling: 50 });
+    await page.waitForFunction(allShown, models.length, { polling: 50 });
     const { script, first, last, count, bytes, others } = await account(page);
     await page.screenshot({ path: path.join(pictures, 'first-gallery.png') });
     report.line('first gallery', count === models.length && others.length === 0,

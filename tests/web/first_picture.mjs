@@ -6,12 +6,11 @@
 // PAGE: the directory that `npm run build` of viewer/ makes. Times are told and decide nothing; requests, bytes and programs do. Exit code 2:
 // wrong use; else see browser.mjs.
 import path from 'node:path';
-import { inChromium, readHierarchy, SLOW_LINE } from './browser.mjs';
+import { inChromium, PATIENCE, readHierarchy, SLOW_LINE } from './browser.mjs';
 import { serve } from './server.mjs';
 
 const SLOWDOWN = 4;
 const PHONE = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
-const PATIENCE = 600_000; // milliseconds
 const PREVIEW = 'meshhier: preview';
 const FIRST_PICTURE = 'meshhier: first picture';
 /// Of scripts and styles before the model can be turned, as they come. Whoever adds to what must be there first reads this first.
@@ -23,6 +22,7 @@ const MOST_PROGRAMS = 1;
 /// The page on a slow device, and each tile that it asks for with the time it took.
 async function openSlowly(browser, url) {
   const page = await browser.newPage({ reducedMotion: 'reduce', ...PHONE });
+  page.setDefaultTimeout(SLOWDOWN * PATIENCE);
   const session = await page.context().newCDPSession(page);
   await session.send('Network.enable');
   await session.send('Network.emulateNetworkConditions', SLOW_LINE);
@@ -69,12 +69,12 @@ function times(page) {
 
 async function check(browser, report, { name, origin, pictures }) {
   const { page, tiles, bytes } = await openSlowly(browser, `${origin}/index.html?model=models/${name}.hier`);
-  const marked = (name) => page.waitForFunction((mark) => performance.getEntriesByName(mark).length > 0, name, { timeout: PATIENCE, polling: 20 });
+  const marked = (name) => page.waitForFunction((mark) => performance.getEntriesByName(mark).length > 0, name, { polling: 20 });
   await marked(PREVIEW);
   await marked(FIRST_PICTURE);
   const first = { asked: [...tiles], bytes: bytes() };
   await page.screenshot({ path: path.join(pictures, `${name}-first.png`) });
-  await page.waitForFunction(() => window.meshhier.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier.settled());
   const { tilesBefore, codeFiles, codeBytes, programs, root, script, preview, picture, now } = await times(page);
   const stats = await page.evaluate(() => window.meshhier.stats());
   await page.screenshot({ path: path.join(pictures, `${name}-settled.png`) });

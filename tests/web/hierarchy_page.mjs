@@ -97,9 +97,11 @@ function measure(scene, material, from = camera) {
   return Float32Array.from({ length: width * height }, (_, i) => pixels[4 * i]);
 }
 
-/// All that was asked for has come, as it does within the seconds of the view's time, or the machine is busy.
+/// All that was asked for has come, as it does within the time that the view's clock jumps over.
 async function arrived() {
-  for (let waits = 0; waits === 0 || (view.stats().pending > 0 && waits < 50); ++waits) await new Promise((resolve) => setTimeout(resolve, waits === 0 ? 0 : 2));
+  const began = performance.now();
+  do await new Promise((resolve) => setTimeout(resolve));
+  while (view.stats().pending > 0 && performance.now() - began < 60_000);
 }
 
 const VERTEX = `varying float depth;
@@ -281,6 +283,7 @@ window.view = {
     let took = base;
     for (let at = 0; at < 1000 * seconds; at += took) {
       await nextFrame();
+      await arrived();
       pose({ direction: [Math.cos(at / 4000), 0.3, Math.sin(at / 4000)], distance });
       frame((clock += took));
       const { triangles, vertexBudget } = view.stats();

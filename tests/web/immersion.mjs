@@ -8,16 +8,14 @@
 import { readFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { collectComplaints, inChromium, readHierarchy, until, withoutRestDetail, comparePictures } from './browser.mjs';
+import { collectComplaints, comparePictures, frames, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const EMULATOR = readFileSync(path.join(path.dirname(fileURLToPath(import.meta.url)), 'node_modules/iwer/build/iwer.min.js'), 'utf8');
 const WINDOW = { viewport: { width: 800, height: 500 }, reducedMotion: 'reduce' };
-const PATIENCE = 120_000; // milliseconds
 
 async function open(browser, origin, name, complaints, device) {
   const page = await browser.newPage(WINDOW);
-  page.setDefaultTimeout(PATIENCE);
   collectComplaints(page, complaints, ['error']);
   await page.addInitScript(withoutRestDetail);
   if (device !== null) {
@@ -41,11 +39,7 @@ async function picture(page) {
 
 /// Once some frames have been drawn.
 async function seen(page) {
-  await page.evaluate(() => new Promise((resolve) => {
-    let left = 6;
-    const count = () => (--left > 0 ? requestAnimationFrame(count) : resolve());
-    requestAnimationFrame(count);
-  }));
+  await frames(page, 6);
   return picture(page);
 }
 
@@ -94,10 +88,14 @@ async function checkVr(browser, report, origin, { name }, pictures) {
   });
   await seen(page);
   await page.evaluate(() => window.headset.controllers.right.position.set(0.2, 1.2, 0.2));
-  const nearer = await seen(page);
+  const [was] = await covered(page, still);
+  let is = 0;
+  const isNearer = await until(page, async () => {
+    [is] = await covered(page, await seen(page));
+    return is > 1.2 * was;
+  });
   await page.evaluate(() => window.headset.controllers.right.updateButtonValue('squeeze', 0));
-  const [was, is] = [(await covered(page, still))[0], (await covered(page, nearer))[0]];
-  report.line('immersion hand', is > 1.2 * was, `a hand pulls it nearer: ${(100 * was).toFixed(1)} to ${(100 * is).toFixed(1)} %`);
+  report.line('immersion hand', isNearer, `a hand pulls it nearer: ${(100 * was).toFixed(1)} to ${(100 * is).toFixed(1)} %`);
   const level = await page.evaluate(() => window.meshhier.stats().finestLevel);
   // Larger, then at rest: while it moves, as much is drawn as this machine can.
   const refined = await until(page, async () => {

@@ -13,13 +13,12 @@ const SCREENS = {
   desktop: { viewport: { width: 1280, height: 800 } },
   phone: { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true },
 };
-const PATIENCE = 240_000; // milliseconds
 const MOST_STEPS = 30;
 /// A model of fewer triangles shows the original ones wherever a view of a part of it rests: ZSV on the way only.
 const RESTS_COARSER = 80_000;
 
 function settle(page) {
-  return page.waitForFunction(() => window.meshhier.settled(), null, { timeout: PATIENCE });
+  return page.waitForFunction(() => window.meshhier.settled());
 }
 
 function modeOf(page) {
@@ -63,7 +62,7 @@ async function bitCloser(page) {
   const before = await cameraOf(page);
   await page.mouse.move(0.5 * width, 0.5 * height);
   await page.mouse.wheel(0, -200);
-  await page.waitForFunction((camera) => JSON.stringify(window.meshhier.camera()) !== camera, before, { timeout: PATIENCE });
+  await page.waitForFunction((camera) => JSON.stringify(window.meshhier.camera()) !== camera, before);
 }
 
 /// Down to the surface in the middle of the picture; each mode's first settled picture is kept. As long as all of the model is in view,
@@ -83,13 +82,12 @@ async function goDown(page, keep) {
 async function visit(browser, report, { origin, pictures, screen, name, triangles, isFirst }) {
   const strip = isFirst && screen === 'desktop';
   const page = await browser.newPage({ reducedMotion: 'reduce', ...SCREENS[screen] });
-  page.setDefaultTimeout(PATIENCE);
   await watchModes(page);
   const complaints = [];
   collectComplaints(page, complaints, ['error', 'warning']);
   const shoot = (what) => page.screenshot({ path: path.join(pictures, `${what}.png`) });
   await page.goto(`${origin}/index.html`);
-  await page.waitForFunction(() => document.querySelector('a.cell') !== null && document.querySelector('.cell-stage.waiting') === null, null, { timeout: PATIENCE });
+  await page.waitForFunction(() => document.querySelector('a.cell') !== null && document.querySelector('.cell-stage.waiting') === null);
   await page.waitForLoadState('networkidle');
   await page.waitForFunction(() => document.querySelector('.cell-stage.waiting') === null);
   if (isFirst) await shoot(`modes-${screen}-TP`);

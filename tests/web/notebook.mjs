@@ -10,9 +10,8 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
-import { collectComplaints, decodePicture, inChromium } from './browser.mjs';
+import { collectComplaints, decodePicture, frames, inChromium } from './browser.mjs';
 
-const PATIENCE = 120_000; // milliseconds
 const SHAPE = { width: 800, height: 600 };
 const PACKAGE = fileURLToPath(new URL('../../python', import.meta.url));
 const PYTHON = process.env.PYTHON ?? '/usr/bin/python3';
@@ -43,7 +42,7 @@ async function startKernel(hierarchy, size, file) {
 
 /// What a frame shows once nothing more comes: its text, the view, and the part of its picture that is not the ground.
 async function shownIn(page, frame) {
-  await frame.waitForFunction(() => document.querySelector('meshhier-viewer')?.view?.stats().settled, null, { timeout: PATIENCE });
+  await frame.waitForFunction(() => document.querySelector('meshhier-viewer')?.view?.stats().settled);
   const text = await frame.locator('body > p').innerText();
   const problem = await frame.locator('meshhier-viewer p[role=alert]').isVisible();
   const finest = await frame.evaluate(() => document.querySelector('meshhier-viewer').view.stats().finestLevel);
@@ -67,13 +66,13 @@ async function open(browser, address, content) {
 }
 
 /// Comes so near that the finest tiles that can be had are shown.
-async function approach(page, frame) {
+async function approach(frame) {
   await frame.evaluate(() => {
     const viewer = document.querySelector('meshhier-viewer');
     const [position, target] = [viewer.camera.split(',').slice(0, 3).map(Number), viewer.camera.split(',').slice(3).map(Number)];
     viewer.camera = [...position.map((value, k) => target[k] + (value - target[k]) / 3), ...target].join();
   });
-  await page.waitForTimeout(500);
+  await frames(frame);
 }
 
 /// Returns the finest level that is shown once the camera has come near.
@@ -83,7 +82,7 @@ async function checkCell(browser, report, pictures, { what, address, content, te
   const shown = await shownIn(page, frame);
   writeFileSync(path.join(pictures, `notebook ${what}.png`), shown.picture);
   report.line(`notebook ${what}`, shown.drawn > 0.05 && shown.drawn < 0.9 && !shown.problem && shown.text.includes(text), `${(100 * shown.drawn).toFixed(0)} % of the cell are drawn: ${shown.text}`);
-  await approach(page, frame);
+  await approach(frame);
   const { finest } = await shownIn(page, frame);
   report.line(`notebook ${what} workers`, page.workers().length > 0, `${page.workers().length} decode tiles`);
   const others = [...asked].filter((origin) => origin !== 'null' && !origins.some((one) => origin.startsWith(one)));
@@ -101,8 +100,8 @@ async function checkEnd(browser, report, what, { address }, end) {
   await shownIn(page, frame);
   await end();
   const camera = await frame.evaluate(() => document.querySelector('meshhier-viewer').camera);
-  await approach(page, frame);
-  await frame.waitForFunction(() => document.querySelector('p').innerText.includes('are not in this notebook'), null, { timeout: PATIENCE });
+  await approach(frame);
+  await frame.waitForFunction(() => document.querySelector('p').innerText.includes('are not in this notebook'));
   const { text, problem, drawn } = await shownIn(page, frame);
   const now = await frame.evaluate(() => document.querySelector('meshhier-viewer').camera);
   report.line(`notebook ${what}: the kernel's end`, !problem && drawn > 0.05 && now !== camera && text.endsWith('are not in this notebook'), text);

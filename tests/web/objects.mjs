@@ -15,7 +15,6 @@ const VIEWPORT = { width: 1000, height: 700 };
 const CLIP = { x: VIEWPORT.width * 0.4, y: 150, width: VIEWPORT.width * 0.5, height: 450 }; // beside all buttons
 const AXE = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
 const MARK = [255, 138, 31]; // the line around an object
-const PATIENCE = 120_000; // milliseconds
 const TRIES = 40; // places that are clicked until an object is there
 
 class Visitor {
@@ -25,7 +24,6 @@ class Visitor {
 
   async open(choices = '') {
     const page = await this.browser.newPage({ reducedMotion: 'reduce', viewport: VIEWPORT });
-    page.setDefaultTimeout(PATIENCE);
     await page.addInitScript(withoutRestDetail);
     page.complaints = [];
     page.on('console', (message) => {
@@ -47,7 +45,7 @@ class Visitor {
 }
 
 async function settle(page) {
-  await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier?.settled());
 }
 
 /// The name on the card; empty: there is no card, or nothing is picked.
@@ -60,12 +58,32 @@ function nameIs(page, good) {
   return until(page, async () => good(await pickedName(page)));
 }
 
+/// From now on `window.picks` counts those that have ended, whatever was there. The tool comes with the first tap, or by its key.
+async function countPicks(page) {
+  await page.waitForFunction(() => window.meshhier.view.plugins.named('page objects') !== undefined);
+  await page.evaluate(() => {
+    const objects = window.meshhier.view.plugins.named('page objects');
+    const pick = objects.pick.bind(objects);
+    window.picks = 0;
+    objects.pick = (...place) => pick(...place).finally(() => { ++window.picks; });
+  });
+}
+
+/// Picks by `act`, and waits for what comes of it. Two taps are not one.
+async function pick(page, act) {
+  await page.waitForTimeout(700);
+  const before = await page.evaluate(() => window.picks);
+  await act();
+  await page.waitForFunction((count) => window.picks > count, before);
+}
+
 /// Clicks here and there, beside the card, until an object with a name of parts is picked. Returns its place.
 async function clickObject(page) {
-  for (let i = 0; i < TRIES; ++i) {
-    const place = { x: VIEWPORT.width * (0.66 + 0.22 * Math.sin(7 * i)), y: VIEWPORT.height * (0.5 + 0.2 * Math.cos(5 * i)) };
-    await page.mouse.click(place.x, place.y);
-    await page.waitForTimeout(700); // two taps are not one
+  const places = Array.from({ length: TRIES }, (_, i) => ({ x: VIEWPORT.width * (0.66 + 0.22 * Math.sin(7 * i)), y: VIEWPORT.height * (0.5 + 0.2 * Math.cos(5 * i)) }));
+  await page.mouse.click(places[0].x, places[0].y);
+  await countPicks(page);
+  for (const place of places) {
+    await pick(page, () => page.mouse.click(place.x, place.y));
     if ((await pickedName(page)).includes('/')) return place;
   }
   throw new Error('no object was picked');
@@ -89,10 +107,11 @@ async function checkHand(visitor) {
   visitor.check('card', scrollWidth <= clientWidth, `what is ${scrollWidth} wide is in a card of ${clientWidth}`);
   visitor.check('click', /Size\s/.test(size) && /Area/.test(size), size.replaceAll('\n', ' '));
   const spot = { clip: { x: place.x - 5, y: place.y - 5, width: 10, height: 10 } };
+  await settle(page);
   const marked = await page.screenshot(spot);
   await page.getByRole('application').focus();
   await page.keyboard.press('Backspace');
-  visitor.check('mark', (await nameIs(page, (told) => told === '')) && !(await page.screenshot(spot)).equals(marked), 'the object has another colour');
+  visitor.check('mark', (await nameIs(page, (told) => told === '')) && (await until(page, async () => !(await page.screenshot(spot)).equals(marked))), 'the object has another colour');
   await page.mouse.click(place.x, place.y);
   await nameIs(page, (told) => told === name);
   await page.waitForTimeout(700);
@@ -148,8 +167,7 @@ async function pickMiddle(page) {
   for (let i = 0; i < TRIES && (await pickedName(page)) === ''; ++i) {
     await page.keyboard.press(i % 2 === 0 ? 'ArrowRight' : 'ArrowUp');
     await settle(page);
-    await page.keyboard.press('Enter');
-    await page.waitForTimeout(700);
+    await pick(page, () => page.keyboard.press('Enter'));
   }
   return (await pickedName(page)) !== '';
 }
@@ -158,6 +176,7 @@ async function checkKeys(visitor) {
   const page = await visitor.open();
   await page.keyboard.press('j');
   await page.locator('.tool-card', { hasText: 'Objects' }).waitFor();
+  await countPicks(page);
   visitor.check('key of the middle', await pickMiddle(page), await pickedName(page));
   const [first] = await page.evaluate(async () => (await window.meshhier.view.objects.rows({ begin: window.meshhier.view.objects.count - 1, end: window.meshhier.view.objects.count })).map(({ name }) => name));
   const field = page.getByRole('combobox', { name: 'Name of an object' });
@@ -195,8 +214,7 @@ async function checkPasses(visitor) {
   const pictures = [];
   for (const besides of ['', '&occlusion=on&wires=on&points=on']) {
     const other = await visitor.open(`${besides}${hidden}`);
-    await other.waitForFunction(() => window.meshhier.view.omits !== null, null, { timeout: 10_000 }).catch(() => undefined);
-    await other.waitForTimeout(1000);
+    await other.waitForFunction(() => window.meshhier.view.omits !== null);
     await settle(other);
     pictures.push(await other.screenshot({ clip: CLIP }));
     if (besides !== '') await visitor.picture(other, 'all-hidden');
@@ -226,11 +244,14 @@ async function checkCut(visitor) {
   await page.getByRole('application').focus();
   await page.keyboard.press('x');
   await page.getByRole('radio', { name: 'z', exact: true }).check({ force: true });
-  await page.waitForTimeout(1000);
-  await settle(page);
-  const cut = await markedPixels(page);
+  let cut = whole;
+  const isCut = await until(page, async () => {
+    await settle(page);
+    cut = await markedPixels(page);
+    return cut > 50 && cut !== whole;
+  });
   await visitor.picture(page, 'cut');
-  visitor.check('line of a cut model', cut > 50 && cut !== whole, `${cut} pixels, of the whole object ${whole}`);
+  visitor.check('line of a cut model', isCut, `${cut} pixels, of the whole object ${whole}`);
   await page.close();
 }
 

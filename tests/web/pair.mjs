@@ -12,7 +12,6 @@ import path from 'node:path';
 import { addStyle, collectComplaints, decodePicture, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
 import { withSite } from './site.mjs';
 
-const PATIENCE = 120_000; // milliseconds
 const SIZE = { width: 640, height: 480 };
 const TINTS = [[0x3b, 0x7d, 0xd8], [0xe8, 0x89, 0x2b]]; // src/pair/pair.ts
 const LITTLE = 14e6; // bytes, of a budget that is too small for all of both
@@ -29,7 +28,6 @@ class Comparison {
 
   async open(query, { hash = '', size = SIZE, bare = true } = {}) {
     const page = await this.browser.newPage({ viewport: size, reducedMotion: 'reduce' });
-    page.setDefaultTimeout(PATIENCE);
     await page.addInitScript(withoutRestDetail);
     page.complaints = [];
     collectComplaints(page, page.complaints, ['error', 'warning']);
@@ -55,7 +53,7 @@ class Comparison {
 }
 
 async function settle(page) {
-  await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier?.settled());
   await page.evaluate(() => new Promise((done) => { requestAnimationFrame(() => requestAnimationFrame(done)); }));
 }
 

@@ -11,7 +11,6 @@ import { withSite } from './site.mjs';
 
 const WIDE = { viewport: { width: 800, height: 600 } };
 const NARROW = { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
-const PATIENCE = 240_000; // milliseconds
 const LEAST_TARGET = 40; // CSS pixels
 const CAP = [0xd9, 0x82, 0x5b]; // src/tools/caps.ts
 const MARGIN = 12; // millimetres, src/tools/paper.ts
@@ -23,7 +22,6 @@ class Visitor {
 
   async open(link = '', options = WIDE) {
     const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
-    page.setDefaultTimeout(PATIENCE);
     page.complaints = [];
     page.on('console', (message) => {
       if (['error', 'warning'].includes(message.type())) page.complaints.push(message.text());
@@ -45,7 +43,7 @@ class Visitor {
 }
 
 function settle(page) {
-  return page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  return page.waitForFunction(() => window.meshhier?.settled());
 }
 
 /// r, g, b, a of a picture.

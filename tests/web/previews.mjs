@@ -9,12 +9,11 @@ import { inChromium, readHierarchy } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WINDOW = { viewport: { width: 800, height: 600 }, reducedMotion: 'reduce' };
-const PATIENCE = 240_000; // milliseconds
 
 async function preview(browser, report, { name }, origin, pictures) {
   const page = await browser.newPage(WINDOW);
   await page.goto(`${origin}/index.html?model=models/${name}.hier`);
-  await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier?.settled());
   const { tiles, triangles, failed } = await page.evaluate(() => window.meshhier.stats());
   await page.screenshot({ path: path.join(pictures, `${name}.png`) });
   report.line(`${name} preview`, failed === 0, `${tiles} tiles, ${triangles} triangles`);

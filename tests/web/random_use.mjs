@@ -1,25 +1,24 @@
 // Uses the viewer's page at random in headless Chromium: keys, clicks, drags, turns of the wheel, and buttons. Nothing may reach the console.
 //
-//   node random_use.mjs PICTURES PAGE SECONDS HIERARCHY...
+//   node random_use.mjs PICTURES PAGE ACTS HIERARCHY...
 //
-// PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Each hierarchy is used for SECONDS. What is done is chosen by
+// PAGE: the directory that `npm run build` of viewer/ makes, dist/page. Each hierarchy is used for that many acts. What is done is chosen by
 // the same numbers each time. With the model open afresh the page must not hold more and more. A picture of the end goes to the
 // directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
-import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
+import { collectComplaints, inChromium, PATIENCE, readHierarchy } from './browser.mjs';
 import { random } from './random.mjs';
 import { withSite } from './site.mjs';
 
 const VIEWPORT = { width: 480, height: 360 };
 const BURST = 8; // acts at once: the page has no time to rest
-const PATIENCE = 120_000; // milliseconds
-const DRAG_PATIENCE = 30_000; // milliseconds
+const DRAG_PATIENCE = 10_000; // milliseconds
 const KEYS = [...'abcdefghijklmnopqrstuvwxyz0123456789+-?', 'Enter', 'Escape', 'Backspace', 'Delete', 'Tab', ' ', 'Home',
   'ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown', 'Shift+ArrowLeft', 'Shift+Tab'];
 const ACTS = ['key', 'key', 'key', 'tool', 'tool', 'click', 'drag', 'wheel', 'control', 'control'];
 const TOOLS = ['i', 'm', 'x', 'n', 'k'];
 
-const EARLY = 0.4; // of the time: by then the code of most tools is there
+const EARLY = 0.4; // of the acts: by then the code of most tools is there
 /// So much may be held later beside what was held early.
 const MORE = { heap: { factor: 1.3, some: 6e6 }, nodes: { factor: 1.5, some: 1000 }, listeners: { factor: 1.5, some: 150 } };
 
@@ -131,7 +130,7 @@ async function opened(page, address) {
       interrupted = true;
     });
   }
-  await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier?.settled());
 }
 
 /// Returns what the page holds, with the model open afresh.
@@ -145,9 +144,8 @@ async function held(page, session, address) {
   return { heap: of('JSHeapUsedSize'), nodes: of('Nodes'), listeners: of('JSEventListeners') };
 }
 
-async function use(browser, report, { pictures, seconds, origin, name, seed }) {
+async function use(browser, report, { pictures, acts, origin, name, seed }) {
   const page = await browser.newPage({ viewport: VIEWPORT });
-  page.setDefaultTimeout(PATIENCE);
   const complaints = [];
   collectComplaints(page, complaints);
   page.on('crash', () => complaints.push('the page crashed'));
@@ -157,14 +155,14 @@ async function use(browser, report, { pictures, seconds, origin, name, seed }) {
   await session.send('Performance.enable');
   const hand = new Hand(page, seed);
   const goOn = async (part) => {
-    for (const end = Date.now() + 1000 * seconds * part; Date.now() < end; ) {
+    while (hand.done < part * acts) {
       await hand.burst();
       if (!page.url().includes(`#models/${name}`)) await opened(page, address); // it went to the gallery
     }
   };
   await goOn(EARLY);
   const early = await held(page, session, address);
-  await goOn(1 - EARLY);
+  await goOn(1);
   await page.screenshot({ path: path.join(pictures, `random-use-${name}.png`) });
   report.line(`random use ${name}`, complaints.length === 0, `${hand.done} acts; ${[...new Set(complaints)].join('; ') || 'no complaints'}`);
   const late = await held(page, session, address);
@@ -174,16 +172,16 @@ async function use(browser, report, { pictures, seconds, origin, name, seed }) {
   await page.close();
 }
 
-async function useAll(browser, report, [pictures, page, seconds, ...directories]) {
+async function useAll(browser, report, [pictures, page, acts, ...directories]) {
   const hierarchies = directories.map(readHierarchy);
   await withSite(page, hierarchies, async (origin) => {
-    for (const [seed, { name }] of hierarchies.entries()) await use(browser, report, { pictures, seconds, origin, name, seed });
+    for (const [seed, { name }] of hierarchies.entries()) await use(browser, report, { pictures, acts: Number(acts), origin, name, seed });
   });
 }
 
 const given = process.argv.slice(2);
 if (given.length < 4 || !(Number(given[2]) > 0)) {
-  console.log('usage: node random_use.mjs PICTURES PAGE SECONDS HIERARCHY...');
+  console.log('usage: node random_use.mjs PICTURES PAGE ACTS HIERARCHY...');
   process.exit(2);
 }
 process.exit(await inChromium(given[0], (browser, report) => useAll(browser, report, given)));

@@ -10,7 +10,6 @@ import { startServer } from './meshhier_server.mjs';
 import { serve } from './server.mjs';
 
 const FIRST_PICTURE = 'meshhier: first picture';
-const PATIENCE = 60_000; // milliseconds
 
 /// The page over a model, behind a line; what it asks of the model's host.
 async function open(browser, url, model, line = SLOW_LINE) {
@@ -31,9 +30,9 @@ async function open(browser, url, model, line = SLOW_LINE) {
   });
   session.on('Network.dataReceived', ({ requestId, dataLength }) => { if (ours.has(requestId)) bytes += dataLength; });
   await page.goto(`${url}?model=${encodeURIComponent(model)}`);
-  await page.waitForFunction((mark) => performance.getEntriesByName(mark).length > 0, FIRST_PICTURE, { timeout: PATIENCE, polling: 20 });
+  await page.waitForFunction((mark) => performance.getEntriesByName(mark).length > 0, FIRST_PICTURE, { polling: 20 });
   const first = { asked: asked.length, picture: await page.evaluate((mark) => performance.getEntriesByName(mark)[0].startTime, FIRST_PICTURE) };
-  await page.waitForFunction(() => window.meshhier.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier.settled());
   const stats = await page.evaluate(() => window.meshhier.stats());
   return { page, asked, bytes: () => bytes, first, stats, complaints };
 }

@@ -12,7 +12,6 @@ import { decodePicture, inChromium, until, withoutRestDetail } from './browser.m
 import { startServer } from './meshhier_server.mjs';
 
 const WINDOW = { viewport: { width: 700, height: 500 }, reducedMotion: 'reduce' };
-const PATIENCE = 120_000; // milliseconds
 const SIDE = 150; // cells of the square
 const FIRST_TILES = 45; // that come before the other build: of the page some of the finest; of the element, which is smaller, fewer do
 const FIRST_OF_ELEMENT = 5;
@@ -69,7 +68,6 @@ async function holdTiles(page, first) {
 
 async function openSquare(browser, url) {
   const page = await browser.newPage(WINDOW);
-  page.setDefaultTimeout(PATIENCE);
   await page.addInitScript(withoutRestDetail);
   const tiles = await holdTiles(page, FIRST_TILES);
   await page.goto(`${url}#models/square.hier`);
@@ -110,7 +108,6 @@ async function checkPage(browser, report, { shop, url, pictures, decoder }, { wh
 async function checkElement(browser, report, { shop, url, decoder, element }) {
   shop.put('red', 'none');
   const page = await browser.newPage(WINDOW);
-  page.setDefaultTimeout(PATIENCE);
   const body = `<!doctype html><link rel="icon" href="data:,"><script type="module" src="${element}"></script><meshhier-viewer src="models/square.hier" style="height: 450px"></meshhier-viewer>`;
   await page.route('**/host.html', (route) => route.fulfill({ contentType: 'text/html', body }));
   const tiles = await holdTiles(page, FIRST_OF_ELEMENT);
@@ -135,7 +132,6 @@ async function checkElement(browser, report, { shop, url, decoder, element }) {
 async function checkSilence(browser, report, { shop, url }) {
   shop.put('red', 'none');
   const page = await browser.newPage(WINDOW);
-  page.setDefaultTimeout(PATIENCE);
   await page.addInitScript(withoutRestDetail);
   let isSilent = true;
   await page.route(/\/tiles\/(?!00\/)/, async (route) => { if (!isSilent) await route.continue(); });
@@ -146,7 +142,7 @@ async function checkSilence(browser, report, { shop, url }) {
   const told = Date.now() - began;
   const more = await problem.locator('.problem-more').textContent();
   isSilent = false;
-  report.line('silent host', told < 40_000 && more.includes('has sent nothing for 20 seconds'), `after ${(told / 1000).toFixed(1)} s: ${more}`);
+  report.line('silent host', more.includes('has sent nothing for 20 seconds'), `after ${(told / 1000).toFixed(1)} s: ${more}`);
   await page.waitForFunction(() => window.meshhier.settled() && window.meshhier.stats().tiles > 1);
   report.line('silent host is back', await until(page, async () => (await problem.count()) === 0), `${((Date.now() - began) / 1000).toFixed(1)} s: all is there, nobody did anything`);
   await page.close();

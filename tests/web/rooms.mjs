@@ -8,11 +8,10 @@ import { execFileSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
-import { addStyle, collectComplaints, decodePicture, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
+import { addStyle, collectComplaints, decodePicture, inChromium, PATIENCE, readHierarchy, steady, until, withoutRestDetail } from './browser.mjs';
 import { house, HOUSE, plyOf } from './house.mjs';
 import { withSite } from './site.mjs';
 
-const PATIENCE = 120_000; // milliseconds
 const SIZE = { width: 640, height: 480 };
 const EYES = 0.64 * HOUSE.ceilings[0];
 const NEAR = 0.05; // metres
@@ -37,13 +36,13 @@ class Visitor {
     collectComplaints(page, this.complaints);
     await page.addInitScript(withoutRestDetail);
     await page.goto(`${this.origin}/index.html#models/house.hier&${spot}`);
-    await page.waitForFunction(() => window.meshhier?.view?.plugins.named('page dollhouse') !== undefined, null, { timeout: PATIENCE });
+    await page.waitForFunction(() => window.meshhier?.view?.plugins.named('page dollhouse') !== undefined);
     await this.settle(page);
     return page;
   }
 
   async settle(page) {
-    await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+    await page.waitForFunction(() => window.meshhier?.settled());
   }
 
   picture(page, what) {
@@ -55,13 +54,12 @@ function camera(page) {
   return page.evaluate(() => window.meshhier.camera().position);
 }
 
-/// Holds a key until it comes to that, or for so long that it does not.
+/// Holds a key until it comes to that, or for so long that it does not; then until the camera stands.
 async function hold(page, key, holds, milliseconds) {
   await page.keyboard.down(key);
   for (const began = Date.now(); Date.now() - began < milliseconds && !holds(await camera(page)); ) await page.waitForTimeout(50);
   await page.keyboard.up(key);
-  await page.waitForTimeout(600);
-  return camera(page);
+  return steady(page, () => camera(page));
 }
 
 async function pickedHeight(page) {
@@ -119,7 +117,7 @@ async function checkWalk(visitor) {
   const page = await visitor.open(`3,${EYES},6,8,${EYES},6&walk=on`);
   await page.getByRole('button', { name: 'Stop walking' }).waitFor();
   await page.locator('.surface').focus();
-  await hold(page, 'w', (place) => place[0] > 5.6, 60_000);
+  await hold(page, 'w', (place) => place[0] > 5.6, PATIENCE);
   const [x, y, z] = await hold(page, 'w', () => false, 2000);
   visitor.check('a wall', x > 5 && x < HOUSE.wall.ground[0] && Math.abs(y - EYES) < NEAR, `${x}, ${y}, ${z}`);
   await visitor.picture(page, 'wall');
@@ -135,7 +133,7 @@ async function checkStairs(visitor) {
   const page = await visitor.open(`9.5,${EYES},0.4,9.5,${EYES},5&walk=on`);
   await page.getByRole('button', { name: 'Stop walking' }).waitFor();
   await page.locator('.surface').focus();
-  const up = await hold(page, 'w', ([, , z]) => z > 5.3, 60_000);
+  const up = await hold(page, 'w', ([, , z]) => z > 5.3, PATIENCE);
   visitor.check('stairs lead up', Math.abs(up[1] - HOUSE.floors[1] - EYES) < NEAR, up.join(', '));
   await visitor.settle(page);
   await visitor.picture(page, 'upstairs');

@@ -8,17 +8,15 @@
 import { appendFileSync, mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
-import { collectComplaints, inChromium } from './browser.mjs';
+import { collectComplaints, inChromium, PATIENCE } from './browser.mjs';
 import { startServer } from './meshhier_server.mjs';
 
-const PATIENCE = 240_000; // milliseconds
 /// High: only cells near the window are elements of the page, and they are counted.
 const WINDOW = { width: 1000, height: 2000 };
-const SETTLE = 2; // seconds: a file that was as it is for so long is whole
+const SETTLE = 5; // seconds: a file that was as it is for so long is whole
 
 async function openPage(browser, url, complaints) {
   const page = await browser.newPage({ reducedMotion: 'reduce', viewport: WINDOW });
-  page.setDefaultTimeout(PATIENCE);
   collectComplaints(page, complaints, ['error', 'warning']);
   await page.goto(url);
   return page;
@@ -50,7 +48,7 @@ async function holdBuild(server, name) {
 async function dropSlowly(file, bytes, told) {
   let written = 0;
   writeFileSync(file, '');
-  const timer = setInterval(() => appendFileSync(file, bytes.subarray(written, ++written)), (1000 * SETTLE) / 10);
+  const timer = setInterval(() => appendFileSync(file, bytes.subarray(written, ++written)), (1000 * SETTLE) / 25);
   try {
     return await told;
   } finally {

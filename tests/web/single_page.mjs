@@ -9,10 +9,9 @@ import { cpSync, mkdirSync, mkdtempSync, rmSync, statSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { pathToFileURL } from 'node:url';
-import { collectComplaints, comparePictures, inChromium, until, withoutRestDetail } from './browser.mjs';
+import { collectComplaints, comparePictures, frames, inChromium, until, withoutRestDetail } from './browser.mjs';
 import { serve } from './server.mjs';
 
-const PATIENCE = 60_000; // milliseconds
 /// The part of a page with all tiles whose coarsest tile is off by more than a rounding to 16 bits.
 const ROUNDED_SHARE = 0.3;
 const PHONE = { viewport: { width: 390, height: 700 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
@@ -28,7 +27,7 @@ async function open(browser, url, { offline = false, phone = false } = {}) {
   const asked = [];
   page.on('request', (request) => /^https?:/.test(request.url()) && asked.push(request.url()));
   await page.goto(url);
-  await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier?.settled());
   return { page, context, asked, complaints, stats: await page.evaluate(() => window.meshhier.stats()) };
 }
 
@@ -37,9 +36,9 @@ async function closeIn(page) {
   for (let i = 0; i < 12; ++i) {
     await page.mouse.move(500, 400);
     await page.mouse.wheel(0, -400);
-    await page.waitForTimeout(50);
+    await frames(page);
   }
-  await page.waitForFunction(() => window.meshhier.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier.settled());
   return page.evaluate(() => window.meshhier.stats());
 }
 
@@ -93,7 +92,7 @@ async function checkSite(browser, report, site, names) {
   report.line('a site', listed && complaints.length === 0, `lists ${names.length} models with their pictures; ${complaints.join('; ') || 'no errors'}`);
   for (const name of names) {
     await page.goto(`${host.origin}/index.html#models/${name}`);
-    await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+    await page.waitForFunction(() => window.meshhier?.settled());
     const { triangles } = await page.evaluate(() => window.meshhier.stats());
     report.line(`a site's ${name}`, triangles > 1000 && complaints.length === 0, `${triangles} triangles; ${complaints.join('; ') || 'no errors'}`);
   }

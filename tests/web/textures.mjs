@@ -6,7 +6,7 @@
 //
 // PAGE: of viewer/, dist/page. Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
-import { call, decodePicture, inChromium, loseDevice, readHierarchy, SIZE, withPage } from './browser.mjs';
+import { call, decodePicture, frames, inChromium, loseDevice, readHierarchy, SIZE, withPage } from './browser.mjs';
 import { withSite } from './site.mjs';
 import { CORNERS } from './textured_square.mjs';
 
@@ -17,7 +17,6 @@ const REACH = 8;
 const TOLERANCE = 4;
 /// In viewers whose camera stands elsewhere: part of what is covered that has one of the four colours.
 const LEAST_FLAT = 0.9;
-const PATIENCE = 120_000; // milliseconds
 const COARSE = 4; // pixels of error: CesiumJS shows nothing of a tileset that has less
 const EXACT = 1e-6;
 
@@ -81,8 +80,8 @@ async function showTile(page, decoder, { name, isTextured, pictures, report }) {
 }
 
 async function settled(page) {
-  await page.waitForTimeout(300); // so that keys and settings have come to a frame
-  await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  await frames(page); // keys and settings have come to one
+  await page.waitForFunction(() => window.meshhier?.settled());
 }
 
 async function showInPage(browser, decoder, pagePath, hierarchy, { pictures, report }) {

@@ -12,8 +12,8 @@ const SIZE = 512;
 const PIXELS_AN_ERROR = 16;
 // Frames without anything under way before the picture counts as complete.
 const QUIET_FRAMES = 10;
-// Within so many something is in sight: what has come may be in no count for a while.
-const MOST_FRAMES = 1000;
+// Within so many milliseconds something is in sight: what has come may be in no count for a while.
+const LONGEST = 120_000;
 
 const renderer = new THREE.WebGLRenderer({ preserveDrawingBuffer: true });
 renderer.setSize(SIZE, SIZE);
@@ -135,13 +135,14 @@ function look({ direction, distance, close = false, target: middle = [0, 0, 0] }
 /// Refines until nothing is left to do for `errorTarget` pixels.
 async function settle(errorTarget) {
   tiles.errorTarget = PIXELS_AN_ERROR * errorTarget;
-  for (let quiet = 0, frames = 0; quiet < QUIET_FRAMES; ++frames) {
+  const began = performance.now();
+  for (let quiet = 0; quiet < QUIET_FRAMES; ) {
     await frame();
     tiles.update();
     renderer.render(shown, camera);
     const { queued = 0, downloading, parsing } = tiles.stats;
     const isComing = queued + downloading + parsing > 0;
-    const isThere = tiles.visibleTiles.size > 0 || failures.length > 0 || frames >= MOST_FRAMES;
+    const isThere = tiles.visibleTiles.size > 0 || failures.length > 0 || performance.now() - began > LONGEST;
     quiet = isComing || !isThere ? 0 : quiet + 1;
   }
   const names = [];

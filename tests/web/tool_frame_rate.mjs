@@ -2,8 +2,8 @@
 //
 //   node tool_frame_rate.mjs PICTURES PAGE HIERARCHY
 //
-// Each frame takes a fixed time and more for each triangle that WebGL is given, those that caps of a section take too. The device
-// could show half of what a view at rest shows. PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The hierarchy
+// Each frame takes a fixed time and more for each triangle that WebGL is given, those that caps of a section take too; tiles that were asked
+// for are there by the next one. The device could show half of what a view at rest shows. PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The hierarchy
 // must be closed, of many tiles. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
 import { collectComplaints, inChromium, readHierarchy } from './browser.mjs';
@@ -14,7 +14,6 @@ const BASE = 4; // milliseconds a frame takes without a triangle
 const SECONDS = 5;
 const SETTLE_SECONDS = 2;
 const WINDOW = 10; // frames
-const PATIENCE = 240_000; // milliseconds
 
 /// Runs in the page before its own scripts: `window.device`, and callbacks of requestAnimationFrame by its clock.
 function simulateDevice() {
@@ -31,8 +30,12 @@ function simulateDevice() {
   }
   const request = window.requestAnimationFrame.bind(window);
   let last = 0;
+  let isHeld = false; // until tiles have come
+  const waiting = new Set();
   const tick = (now) => {
     request(tick); // ahead of all others in the next frame
+    isHeld = device.perTriangle !== null && window.meshhier.view.stats().pending > 0;
+    if (isHeld) return;
     const { triangles } = device;
     const took = device.perTriangle === null ? now - last : device.base + triangles * device.perTriangle;
     last = now;
@@ -43,11 +46,20 @@ function simulateDevice() {
     device.move?.(device.clock);
   };
   request(tick);
-  window.requestAnimationFrame = (callback) => request(() => { callback(device.clock); });
+  window.requestAnimationFrame = (callback) => {
+    const wait = () => {
+      if (isHeld) request(wait);
+      else if (waiting.delete(id)) callback(device.clock);
+    };
+    const id = request(wait);
+    waiting.add(id);
+    return id;
+  };
+  window.cancelAnimationFrame = (id) => { waiting.delete(id); };
 }
 
 function settle(page) {
-  return page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  return page.waitForFunction(() => window.meshhier?.settled());
 }
 
 /// Looks at the model from around it, so near that it fills the picture.
@@ -73,7 +85,7 @@ async function useTools(page, plain) {
   await page.locator('.surface').focus();
   await page.keyboard.press('x');
   await page.locator('.tool-card', { hasText: 'Cut open' }).waitFor();
-  await page.waitForFunction((least) => window.meshhier.settled() && window.device.lastTriangles > least, plain, { timeout: PATIENCE });
+  await page.waitForFunction((least) => window.meshhier.settled() && window.device.lastTriangles > least, plain);
 }
 
 /// Means of the frames' rates, some frames at a time.
@@ -92,7 +104,7 @@ async function circle(page) {
     device.perTriangle = (1000 / rate - base) / (0.5 * device.lastTriangles);
     device.move = (clock) => { window.lookFrom((clock - device.began) / 4000); };
   }, [RATE, BASE]);
-  await page.waitForFunction((seconds) => window.device.clock - window.device.began > 1000 * seconds, SECONDS, { polling: 100, timeout: PATIENCE });
+  for (let second = 1; second <= SECONDS; ++second) await page.waitForFunction((seconds) => window.device.clock - window.device.began > 1000 * seconds, second, { polling: 100 });
   return page.evaluate(() => {
     window.device.move = null;
     return window.device.frames.map(({ at, ...frame }) => ({ at: at - window.device.began, ...frame }));
@@ -101,7 +113,6 @@ async function circle(page) {
 
 async function check(browser, report, { pictures, origin, name }) {
   const page = await browser.newPage({ viewport: { width: 480, height: 360 }, reducedMotion: 'reduce' });
-  page.setDefaultTimeout(PATIENCE);
   const complaints = [];
   collectComplaints(page, complaints);
   await page.addInitScript(simulateDevice);

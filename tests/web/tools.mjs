@@ -8,7 +8,7 @@
 import { readFileSync, writeFileSync } from 'node:fs';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { collectComplaints, inChromium, inTurn, readHierarchy, until, withoutRestDetail } from './browser.mjs';
+import { collectComplaints, decodePicture, frames, inChromium, inTurn, readHierarchy, until, withoutRestDetail } from './browser.mjs';
 import { serve } from './server.mjs';
 import { withSite } from './site.mjs';
 
@@ -19,7 +19,6 @@ const WIDE = { viewport: { width: 1000, height: 700 } };
 const NARROW = { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true };
 const MIDDLE = { x: 500, y: 350 };
 const CAP = [0xd9, 0x82, 0x5b]; // src/tools/caps.ts
-const PATIENCE = 120_000; // milliseconds
 const LEAST_TARGET = 40; // CSS pixels
 
 class Visitor {
@@ -29,7 +28,6 @@ class Visitor {
 
   async open(options = WIDE) {
     const page = await this.browser.newPage({ reducedMotion: 'reduce', ...options });
-    page.setDefaultTimeout(PATIENCE);
     await page.addInitScript(withoutRestDetail);
     page.complaints = [];
     page.asked = [];
@@ -58,7 +56,7 @@ class Visitor {
 }
 
 async function settle(page) {
-  await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier?.settled());
 }
 
 /// A tool of the bar is open.
@@ -272,7 +270,7 @@ async function checkClip(visitor) {
 /// The volume told once the view rests, and how far off it may be.
 async function volumeOf(page) {
   await settle(page);
-  await page.waitForTimeout(200); // and once more drawn
+  await frames(page); // and once more drawn
   const text = await page.locator('.tool-figures dd').innerText();
   const [, , bound = '0'] = /^\(?[\d.,]+( ± ([\d.,]+))?.*³$/.exec(text);
   const { Volume: value } = await copiedOf(page);
@@ -324,7 +322,7 @@ async function checkNotes(visitor) {
   visitor.check('notes saved', saved.items.length === 1 && note.body[0].value === 'a <b>crack</b>' && Number.isFinite(note.target.selector[0].x), JSON.stringify(note));
   await page.waitForTimeout(500); // the camera has come to rest
   await page.reload();
-  await page.locator('.tool-overlay text', { hasText: 'crack' }).waitFor({ timeout: PATIENCE });
+  await page.locator('.tool-overlay text', { hasText: 'crack' }).waitFor();
   visitor.check('notes in the link', true, `${page.url().length} letters`);
   await page.evaluate(() => { location.hash = location.hash.replace(/&notes=[^&]*/, ''); });
   await page.locator('.tool-overlay text').waitFor({ state: 'detached' });
@@ -377,7 +375,7 @@ async function checkCamera(visitor) {
   await moving.locator('.surface').focus();
   await moving.keyboard.press('r');
   const positionOf = () => moving.evaluate(() => window.meshhier.camera().position.join());
-  const turned = async () => moving.waitForFunction((before) => window.meshhier.camera().position.join() !== before, await positionOf(), { timeout: PATIENCE });
+  const turned = async () => moving.waitForFunction((before) => window.meshhier.camera().position.join() !== before, await positionOf());
   for (let i = 0; i < 3; ++i) await turned();
   await moving.keyboard.press('Escape');
   await moving.keyboard.press('Escape'); // the tools are closed: it goes on
@@ -394,7 +392,7 @@ async function checkCamera(visitor) {
 async function checkShot(visitor, page) {
   await page.getByLabel('Width, pixels').fill('1500');
   await page.getByLabel('Height, pixels').fill('1100');
-  const [file] = await Promise.all([page.waitForEvent('download', { timeout: PATIENCE }), page.getByRole('button', { name: 'Save a picture' }).click()]);
+  const [file] = await Promise.all([page.waitForEvent('download'), page.getByRole('button', { name: 'Save a picture' }).click()]);
   const bytes = readFileSync(await file.path());
   writeFileSync(path.join(visitor.pictures, 'tools-shot.png'), bytes);
   const { width, height, seam, covered } = await page.evaluate(async (data) => {
@@ -471,7 +469,7 @@ async function checkPickExample(visitor, server) {
   const told = page.locator('#told');
   await page.keyboard.down('Shift');
   for (let count = 1; count <= 2; ++count) {
-    await clickUntil(page, { x: MIDDLE.x + 150 * count, y: MIDDLE.y }, () => told.innerText().then((text) => text.includes(`${count} points`)));
+    await clickModel(page, { x: MIDDLE.x + 150 * count, y: MIDDLE.y }, () => told.innerText().then((text) => text.includes(`${count} points`)));
   }
   visitor.check('example pick', page.complaints.length === 0 && (await told.innerText()).includes("the input's own numbers"), [await told.innerText(), ...page.complaints].join('; ').replaceAll('\n', ' '));
   await page.close();
@@ -479,10 +477,7 @@ async function checkPickExample(visitor, server) {
 
 async function checkSectionExample(visitor, server) {
   const page = await openExample(visitor.browser, server, 'section');
-  for (let tries = 0; (await capPixels(page, 'canvas')) < 2000; ++tries) {
-    if (tries === 20) throw new Error('the example shows no cap');
-    await page.waitForTimeout(100);
-  }
+  if (!(await until(page, async () => (await capPixels(page, 'canvas')) >= 2000))) throw new Error('the example shows no cap');
   const [file] = await Promise.all([page.waitForEvent('download'), page.mouse.click(MIDDLE.x, MIDDLE.y)]);
   const paths = [...readFileSync(await file.path(), 'utf8').matchAll(/ d="M[^"]*Z"/g)];
   await visitor.picture(page, 'example-section');
@@ -495,7 +490,7 @@ async function checkPictureExample(visitor, server) {
   await page.locator('canvas').waitFor();
   await page.locator('#message').waitFor({ state: 'hidden' });
   await page.waitForTimeout(1000); // it turns
-  const [file] = await Promise.all([page.waitForEvent('download', { timeout: PATIENCE }), page.mouse.click(MIDDLE.x, MIDDLE.y)]);
+  const [file] = await Promise.all([page.waitForEvent('download'), page.mouse.click(MIDDLE.x, MIDDLE.y)]);
   const bytes = readFileSync(await file.path());
   const [width, height] = [bytes.readUInt32BE(16), bytes.readUInt32BE(20)];
   visitor.check('example picture', width === 6000 && height === 4000 && page.complaints.length === 0, `${width} x ${height}, ${bytes.length} bytes ${page.complaints.join('; ')}`);
@@ -505,17 +500,16 @@ async function checkPictureExample(visitor, server) {
 /// A plug-in of somebody else, and some of the library's, in the element.
 async function checkPluginExample(visitor, server) {
   const page = await openExample(visitor.browser, server, 'plugin');
-  await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled, null, { timeout: PATIENCE });
+  await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled);
   const shot = () => page.locator('meshhier-viewer canvas').screenshot();
   const lined = await shot();
   await page.getByRole('button', { name: 'Contours' }).click();
-  await page.waitForTimeout(500);
-  const bare = await shot();
+  const isBare = await until(page, async () => !lined.equals(await shot()));
   await visitor.picture(page, 'example-plugin');
-  visitor.check('example plugin', !lined.equals(bare), 'its button takes its lines away');
+  visitor.check('example plugin', isBare, 'its button takes its lines away');
   const texts = page.locator('.meshhier-overlay text');
   for (let count = 1; count <= 2; ++count) {
-    await clickUntil(page, { x: MIDDLE.x + 150 * count, y: MIDDLE.y }, async () => (await page.locator('.meshhier-overlay circle').count()) === count);
+    await clickModel(page, { x: MIDDLE.x + 150 * count, y: MIDDLE.y }, async () => (await page.locator('.meshhier-overlay circle').count()) === count);
   }
   visitor.check('example measuring', /^[\d.]+.* units$/.test(await texts.first().innerHTML()), await texts.first().innerHTML());
   const names = await page.evaluate(() => ['contours', 'measuring', 'relief', 'attributes'].filter((name) => document.querySelector('meshhier-viewer').view.plugins.named(name)));
@@ -536,21 +530,31 @@ async function checkFailingPlugin(visitor, page) {
     viewer.registerPlugin(() => ({ name: 'late', enter: ({ surface }) => window.toldOfPlugins.push(`${surface.role} ${surface.isConnected}`) }));
     viewer.replaceWith(viewer);
   });
-  await page.waitForFunction(() => window.toldOfPlugins.length >= 4, null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.toldOfPlugins.length >= 4);
   const told = await page.evaluate(() => [...window.toldOfPlugins, document.querySelector('meshhier-viewer').view.plugins.named('contours')?.name].join(', '));
   visitor.check('element without a plug-in', told === 'no plug-in, application true, no plug-in, application true, contours', told);
 }
 
-/// Clicks at a place, and nearer and nearer to the middle, until it is enough.
-async function clickUntil(page, { x, y }, isEnough) {
-  for (let part = 1; part > 0; part -= 0.1) {
-    await page.mouse.click(MIDDLE.x + (x - MIDDLE.x) * part, y);
-    for (let tries = 0; tries < 10; ++tries) {
-      if (await isEnough()) return;
-      await page.waitForTimeout(100);
-    }
-  }
-  throw new Error('nothing was picked');
+/// Of a row of the picture the outermost place, from the right, that the model covers with all around it; null: there is none.
+function coveredPlace(pixels, from, y) {
+  const { width, height } = WIDE.viewport;
+  const colourAt = (x, row) => pixels.subarray(4 * (row * width + x), 4 * (row * width + x) + 3);
+  const ground = colourAt(0, height - 1);
+  const isCovered = (x, row) => colourAt(x, row).some((value, k) => Math.abs(value - ground[k]) > 20);
+  const around = [-8, 0, 8];
+  for (let x = from; x > MIDDLE.x; x -= 5) if (around.every((right) => around.every((down) => isCovered(x + right, y + down)))) return { x, y };
+  return null;
+}
+
+/// Clicks the model near a place of its row, once it is seen there; what comes of it is enough.
+async function clickModel(page, { x, y }, isEnough) {
+  let place = null;
+  await until(page, async () => {
+    place = coveredPlace(await decodePicture(page, await page.screenshot()), x, y);
+    return place !== null;
+  });
+  await page.mouse.click(place.x, place.y);
+  if (!(await until(page, isEnough))) throw new Error('nothing was picked');
 }
 
 async function checkExamples(visitor, directory) {

@@ -9,17 +9,15 @@ import { mkdirSync, mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSyn
 import { tmpdir } from 'node:os';
 import path from 'node:path';
 import { fileURLToPath } from 'node:url';
-import { collectComplaints, inChromium } from './browser.mjs';
+import { collectComplaints, inChromium, steady, until } from './browser.mjs';
 import { startServer } from './meshhier_server.mjs';
 
-const PATIENCE = 240_000; // milliseconds
 const SLOWLY = 100_000; // bytes a second
 const TOKEN = '0123456789abcdef';
 const HERE = path.dirname(fileURLToPath(import.meta.url));
 
 async function openPage(browser, url, complaints) {
   const page = await browser.newPage({ reducedMotion: 'reduce', viewport: { width: 1000, height: 700 } });
-  page.setDefaultTimeout(PATIENCE);
   collectComplaints(page, complaints, ['error', 'warning']);
   await page.goto(url);
   await page.locator('.upload').waitFor();
@@ -69,20 +67,19 @@ async function checkCancel(page, report, { inbox, work, pictures, mesh }) {
   const slow = path.join(work, 'slow.ply');
   writeFileSync(slow, readFileSync(mesh));
   const outline = () => page.locator('.cell-stage', { hasNotText: /./ }).first().screenshot();
-  const before = await outline();
+  const before = await steady(page, outline);
   const session = await page.context().newCDPSession(page);
   await session.send('Network.emulateNetworkConditions', { offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: SLOWLY });
   await page.setInputFiles('.upload input:not([webkitdirectory])', slow);
   const row = page.locator('.upload-row', { hasText: 'slow.ply' });
   await row.filter({ hasText: /\/s, .* left/ }).waitFor();
   report.line('uploads progress', true, (await row.innerText()).replace(/\s+/g, ' '));
-  report.line('uploads outlines', (await outline()).equals(before), 'they go along when the models move down');
+  report.line('uploads outlines', await until(page, async () => (await outline()).equals(before)), 'they go along when the models move down');
   await page.screenshot({ path: path.join(pictures, 'uploads-row.png') });
   await row.getByRole('button').click();
   await session.send('Network.emulateNetworkConditions', { offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: -1 });
   const isClean = () => readdirSync(inbox).every((name) => !name.startsWith('.') && name !== 'slow.ply');
-  for (const began = Date.now(); !isClean() && Date.now() - began < PATIENCE; ) await new Promise((resolve) => setTimeout(resolve, 20));
-  report.line('uploads cancel', isClean() && (await row.count()) === 0, 'nothing is left of it');
+  report.line('uploads cancel', (await until(page, isClean)) && (await until(page, async () => (await row.count()) === 0)), 'nothing is left of it');
 }
 
 async function checkToken(browser, report, { meshhier, models, inbox, work, complaints }) {

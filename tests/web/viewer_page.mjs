@@ -6,7 +6,7 @@
 // PAGE: the directory that `npm run build` of viewer/ makes, dist/page. The first hierarchy should have some
 // partitions. Each share has an eighth of most checks (MESHHIER_TEST_SHARE). Pictures go to the directory PICTURES. Exit code 2: wrong use; else see browser.mjs.
 import path from 'node:path';
-import { comparePictures, inChromium, inTurn, loseDevice, readHierarchy, until, withoutRestDetail } from './browser.mjs';
+import { comparePictures, inChromium, inTurn, loseDevice, readHierarchy, steady, until, withoutRestDetail } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WIDE = { viewport: { width: 1280, height: 800 } };
@@ -18,7 +18,6 @@ const JOBS = [
   { name: 'half.ply', state: 'building', stage: 'simplify', progress: 0.5, seconds_left: 90 },
   { name: '<b>bad</b>.ply', state: 'failed', message: '<b>bad</b>.ply: byte 7: <i>nothing</i>' },
 ];
-const PATIENCE = 120_000; // milliseconds
 const PICTURE = 'preview.webp';
 const DOT = 'UklGRiIAAABXRUJQVlA4IBYAAAAwAQCdASoBAAEADsD+JaQAA3AAAAAA'; // a WebP of one pixel
 
@@ -77,19 +76,13 @@ function changes(part, before) {
   return until(part.page(), async () => !before.equals(await part.screenshot()));
 }
 
-/// The picture of a part of the page, as soon as it is twice the same.
-async function steady(part) {
-  let last = await part.screenshot();
-  await until(part.page(), async () => {
-    const before = last;
-    last = await part.screenshot();
-    return before.equals(last);
-  });
-  return last;
+/// The picture of a part of the page, once it stands still.
+function still(part) {
+  return steady(part.page(), () => part.screenshot());
 }
 
 function settle(page) {
-  return page.waitForFunction(() => window.meshhier.settled(), null, { timeout: PATIENCE });
+  return page.waitForFunction(() => window.meshhier.settled());
 }
 
 /// Returns the view's mode, by Kim & Lee's names.
@@ -154,20 +147,19 @@ async function checkTurning(visitor, page) {
   const stage = page.locator('.cell-stage').first();
   const { x, y, width, height } = await stage.boundingBox();
   const [middleX, middleY] = [x + width / 2, y + height / 2];
-  const calm = await steady(stage);
+  const calm = await still(stage);
   await page.mouse.move(middleX, middleY);
   visitor.check('gallery pointed at', await changes(stage, calm), 'has another colour');
-  await stage.locator('canvas.cell-solid').waitFor();
-  await page.waitForTimeout(300); // the outline gives way to it
-  const still = await steady(stage);
+  await page.locator('a.cell').first().locator('.solid > canvas.cell-solid').waitFor();
+  const solid = await still(stage);
   await page.waitForTimeout(300);
-  visitor.check('gallery reduced motion', still.equals(await stage.screenshot()), 'outlines stand still');
+  visitor.check('gallery reduced motion', solid.equals(await stage.screenshot()), 'outlines stand still');
   await page.mouse.down();
   await page.mouse.move(middleX + 60, middleY, { steps: 4 });
   await page.mouse.up();
-  visitor.check('gallery drag', (await changes(stage, still)) && !page.url().includes('#'), `turned, and ${page.url()} stays`);
+  visitor.check('gallery drag', (await changes(stage, solid)) && !page.url().includes('#'), `turned, and ${page.url()} stays`);
   await page.locator('a.cell').first().focus();
-  const dragged = await steady(stage);
+  const dragged = await still(stage);
   await page.keyboard.press('ArrowRight');
   visitor.check('gallery arrow keys', await changes(stage, dragged), 'turned');
 }
@@ -177,11 +169,11 @@ async function checkMotion(visitor, names) {
   const page = await visitor.open('', { ...WIDE, reducedMotion: 'no-preference' });
   await paintedCells(page, names);
   const stage = page.locator('.cell-stage').first();
-  const still = await steady(stage);
+  const resting = await still(stage);
   await page.waitForTimeout(300);
-  visitor.check('gallery rest', still.equals(await stage.screenshot()), 'outlines stand still');
+  visitor.check('gallery rest', resting.equals(await stage.screenshot()), 'outlines stand still');
   await stage.hover();
-  await changes(stage, still);
+  await changes(stage, resting);
   visitor.check('gallery motion', await changes(stage, await stage.screenshot()), 'the outline pointed at turns');
   await visitor.close(page, 'gallery motion');
 }
@@ -418,11 +410,8 @@ async function checkFirstView(visitor, [name]) {
   await visitor.close(page, 'first view');
 }
 
-async function checkRest(visitor, [name]) {
-  const page = await visitor.open(anchor(name), { ...WIDE, restDetail: true });
-  await settle(page);
-  await page.waitForTimeout(600);
-  const frames = await page.evaluate(async () => {
+function framesInSecond(page) {
+  return page.evaluate(async () => {
     let count = 0;
     const request = window.requestAnimationFrame;
     window.requestAnimationFrame = (draw) => (++count, request(draw));
@@ -430,7 +419,15 @@ async function checkRest(visitor, [name]) {
     window.requestAnimationFrame = request;
     return count;
   });
-  visitor.check('rest', frames === 0, `${frames} frames in a second`);
+}
+
+/// Once it is seen as fine as it gets, nothing is drawn.
+async function checkRest(visitor, [name]) {
+  const page = await visitor.open(anchor(name), { ...WIDE, restDetail: true });
+  await settle(page);
+  const counts = [];
+  const rests = await until(page, async () => counts.push(await framesInSecond(page)) && counts.at(-1) === 0);
+  visitor.check('rest', rests, `${counts.join(', ')} frames in a second`);
   const before = await picture(page);
   await loseDevice(page);
   await settle(page);
@@ -640,8 +637,7 @@ async function checkNarrowIn(colorScheme, visitor, name, pictures) {
   await settle(page);
   for (const sheet of ['', 'Look and settings', 'Figures', 'Help']) {
     if (sheet !== '') await page.getByRole('button', { name: sheet, exact: true }).tap();
-    await page.waitForTimeout(300);
-    const all = (await targets(page)).filter(({ inSheet }) => !inSheet);
+    const all = (await steady(page, () => targets(page))).filter(({ inSheet }) => !inSheet);
     const out = all.filter(({ left, top, right, bottom }) => left < 0 || top < 0 || right > 360 || bottom > 640);
     const small = all.filter(({ left, top, right, bottom }) => right - left < LEAST_TARGET || bottom - top < LEAST_TARGET);
     const over = all.filter((a, i) => all.slice(i + 1).some((b) => overlap(a, b)));

@@ -9,21 +9,19 @@
 import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import path from 'node:path';
-import { addStyle, collectComplaints, comparePictures, inChromium, readHierarchy, until, withoutRestDetail } from './browser.mjs';
+import { addStyle, collectComplaints, comparePictures, inChromium, readHierarchy, steady, until, withoutRestDetail } from './browser.mjs';
 import { withSite } from './site.mjs';
 
 const WIDE = { viewport: { width: 900, height: 640 }, reducedMotion: 'reduce' };
 const NARROW = { viewport: { width: 360, height: 640 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true, reducedMotion: 'reduce' };
-const PATIENCE = 120_000; // milliseconds
 const LEAST_VIVID = 0.01; // of the picture
 
 async function settle(page) {
-  await page.waitForFunction(() => window.meshhier?.settled(), null, { timeout: PATIENCE });
+  await page.waitForFunction(() => window.meshhier?.settled());
 }
 
 async function open(browser, address, complaints, options = WIDE) {
   const page = await browser.newPage(options);
-  page.setDefaultTimeout(PATIENCE);
   collectComplaints(page, complaints);
   await page.addInitScript(withoutRestDetail);
   await page.goto(address);
@@ -140,7 +138,7 @@ async function checkFirst(browser, report, origin, { name, view, complaints, pic
   for (const [form, options] of [['wide', WIDE], ['narrow', NARROW]]) {
     const page = await open(browser, model, complaints, options);
     await page.locator('.view-legend').waitFor();
-    const vivid = await vividOf(decoder, await page.screenshot({ path: path.join(pictures, `views-first-${form}.png`) }));
+    const vivid = await vividOf(decoder, await steady(page, () => page.screenshot({ path: path.join(pictures, `views-first-${form}.png`) })));
     const legend = await page.locator('.view-legend').innerText();
     report.line(`first view ${form}`, vivid >= LEAST_VIVID && legend.includes(`${view.attribute}, mm`) && legend.includes('± 0.005 mm'), `${(100 * vivid).toFixed(1)} % vivid; ${legend.replace(/\s+/g, ' ')}`);
     await page.close();
@@ -211,10 +209,9 @@ async function checkElement(browser, report, origin, { name, link, complaints, p
     const body = `<!doctype html><link rel="icon" href="data:,"><title>host</title><style>body { margin: 0 }</style><script type="module" src="meshhier-viewer.js"></script><meshhier-viewer src="models/${name}.hier"${view} style="width: ${width}px; height: ${height}px"></meshhier-viewer>`;
     await page.route('**/host.html', (route) => route.fulfill({ contentType: 'text/html', body }));
     await page.goto(`${origin}/host.html`);
-    await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled, null, { timeout: PATIENCE });
+    await page.waitForFunction(() => document.querySelector('meshhier-viewer').view?.stats().settled);
     if (what === 'attribute') await until(page, () => page.evaluate(() => document.querySelector('meshhier-viewer').view.plugins.cuts.length > 0));
-    await page.waitForTimeout(500);
-    const picture = await page.screenshot({ path: path.join(pictures, `views-element-${what}.png`) });
+    const picture = await steady(page, () => page.screenshot({ path: path.join(pictures, `views-element-${what}.png`) }));
     shown[what] = await page.evaluate(() => {
       const { view, camera } = document.querySelector('meshhier-viewer');
       return { cuts: view.plugins.cuts.length, colours: view.look.colours, level: view.mostLevel, camera };
