@@ -1,5 +1,6 @@
 #include "server/byte_range.h"
 
+#include "base/small_letters.h"
 #include "base/trimmed.h"
 
 #include <algorithm>
@@ -30,7 +31,7 @@ RangeAnswer last_bytes(std::uint64_t count, std::uint64_t file_bytes) {
 }  // namespace
 
 RangeAnswer find_range(std::string_view header, std::uint64_t file_bytes) {
-  if (!header.starts_with(kUnit))
+  if (small_letters(header.substr(0, kUnit.size())) != kUnit)
     return {};
   const std::string_view text = trimmed(header.substr(kUnit.size()));
   const std::size_t dash = text.find('-');

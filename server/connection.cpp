@@ -78,8 +78,19 @@ Connection::Received Connection::receive() {
   return may_go_on ? Received::nothing_yet : Received::end;
 }
 
+/// Returns where the next head begins in received_: behind an empty line, which some clients send
+/// behind a body (RFC 9112, section 2.2).
+std::size_t Connection::head_begin() const {
+  return received_.starts_with(kLineEnd) ? kLineEnd.size() : 0;
+}
+
+bool Connection::has_begun() const {
+  return received_.size() > head_begin();
+}
+
 bool Connection::has_head() const {
-  return received_.find(kHeadEnd) != std::string::npos || received_.size() > kMostHeadBytes;
+  return received_.find(kHeadEnd, head_begin()) != std::string::npos ||
+         received_.size() > kMostHeadBytes;
 }
 
 bool Connection::read_available() {
@@ -97,19 +108,25 @@ void Connection::begin_exchange() {
   exchanged_bytes_ = 0;
 }
 
+Connection::Next Connection::refuse(RefusedHead refusal) {
+  refusal_ = std::move(refusal);
+  return Next::refused;
+}
+
 Connection::Next Connection::next_request() {
   begin_exchange();  // also if there is no request: a refusal is a reply
   has_unread_ = has_begun();
+  received_.erase(0, head_begin());
   const std::size_t found = received_.find(kHeadEnd);
   const std::size_t bytes = found == std::string::npos ? 0 : found + kHeadEnd.size();
   if (bytes > kMostHeadBytes || received_.size() - bytes > kMostHeadBytes)
-    return Next::too_large;
+    return refuse(refuse_size(received_));
   if (bytes == 0)
     return Next::end;
   auto head = parse_head(std::string_view(received_).substr(0, bytes));
-  if (!head)
-    return Next::malformed;
-  head_ = std::move(*head);
+  if (auto* refused = std::get_if<RefusedHead>(&head))
+    return refuse(std::move(*refused));
+  head_ = std::get<RequestHead>(std::move(head));
   received_.erase(0, bytes);
   has_unread_ = head_.has_body || has_begun();
   body_left_ = head_.body_bytes.value_or(0);

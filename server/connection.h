@@ -44,19 +44,19 @@ class Connection final : public httplib::Stream {
   /// called: a request's head is there as a whole, or none will come.
   bool read_available();
   /// Whether a part of the next request is there.
-  bool has_begun() const { return !received_.empty(); }
+  bool has_begun() const;
   /// The number of requests so far.
   std::size_t requests() const { return requests_; }
 
   enum class Next {
-    request,    ///< head() is the next request's
-    malformed,  ///< the bytes that came are none
-    too_large,
-    end,  ///< the client has closed the conversation
+    request,  ///< head() is the next request's
+    refused,  ///< the bytes that came are none; refusal() says why
+    end,      ///< the client has closed the conversation
   };
   /// Takes the next request. Requires that read_available() was true.
   Next next_request();
   const RequestHead& head() const { return head_; }
+  const RefusedHead& refusal() const { return refusal_; }
 
   /// A piece of the body.
   struct BodyPiece {
@@ -89,8 +89,10 @@ class Connection final : public httplib::Stream {
   /// Waits until the socket is ready for `event`; returns false if it is not before `end`, or once
   /// `is_over` says so.
   bool wait(short event, Clock::time_point end, const std::function<bool()>& is_over) const;
+  std::size_t head_begin() const;
   bool has_head() const;
   void begin_exchange();
+  Next refuse(RefusedHead refusal);
   std::size_t take_received(std::span<std::byte> bytes);
   BodyPiece receive_body(std::span<std::byte> bytes);
   bool invite_body();
@@ -108,6 +110,7 @@ class Connection final : public httplib::Stream {
   Sent sent_;
   std::string received_;  ///< not yet taken as a head
   RequestHead head_;
+  RefusedHead refusal_;
   std::size_t place_ = 0;  ///< bytes that were read of the head
   std::size_t requests_ = 0;
   std::uint64_t body_left_ = 0;  ///< announced bytes that have not come

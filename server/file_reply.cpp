@@ -49,8 +49,8 @@ Reply file_reply(const Request& request, const SentFile& sent) {
     reply.headers.emplace_back("Vary", "Accept-Encoding");
   if (gzip && request.accept_encoding && !allows_gzip(*request.accept_encoding))
     return not_acceptable(std::move(reply));
-  if (request.if_none_match && names_tag(*request.if_none_match, sent.tag)) {
-    reply.status = 304;
+  if (const auto status = status_by_conditions(request, sent.tag)) {
+    reply.status = *status;
     return reply;
   }
   const std::uint64_t bytes = sent.file->size();

@@ -19,8 +19,8 @@ struct SentFile {
   bool may_be_gzip = false;  ///< stored as a gzip member, sent as one if its bytes say so
 };
 
-/// Returns 200, 206, 304, 416, or 406: a file that is stored as gzip is never unpacked here, so
-/// that no request makes the server hold a tile. Clients that say nothing of encodings take any
+/// Returns 200, 206, 304, 412, 416, or 406: a file that is stored as gzip is never unpacked here,
+/// so that no request makes the server hold a tile. Clients that say nothing of encodings take any
 /// (RFC 9110, 12.5.3). Reads at most the first bytes; the reply keeps the file open. Thread-safe.
 /// Throws Error(io).
 Reply file_reply(const Request& request, const SentFile& sent);

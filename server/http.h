@@ -45,6 +45,7 @@ struct Request {
   std::string target{};  ///< as it was sent: "/models.json?x", not decoded; of an address its path
   std::optional<std::string> host{};
   std::optional<std::string> accept_encoding{};
+  std::optional<std::string> if_match{};
   std::optional<std::string> if_none_match{};
   std::optional<std::string> if_range{};
   std::optional<std::string> range{};

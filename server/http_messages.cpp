@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/chrono.h>
+
 namespace meshhier::server {
 namespace {
 
@@ -21,11 +23,23 @@ std::optional<std::string> header(const httplib::Request& request, const char* n
   return request.get_header_value(name);
 }
 
-/// Returns the host that is asked; "" if there is none, which HTTP/1.0 alone allows.
+/// Returns the host that is asked; "" if it is an empty one, which the library leaves out. Only
+/// HTTP/1.0 may name none.
 std::optional<std::string> host_of(const httplib::Request& request) {
   if (request.version == "HTTP/1.0")
     return header(request, "Host");
   return header(request, "Host").value_or("");
+}
+
+/// Returns a list that may be in several headers (RFC 9110, section 5.3): the list of all.
+std::optional<std::string> list(const httplib::Request& request, const char* name) {
+  const std::size_t count = request.get_header_value_count(name);
+  if (count == 0)
+    return std::nullopt;
+  std::string all = request.get_header_value(name);
+  for (std::size_t i = 1; i < count; ++i)
+    all.append(", ").append(request.get_header_value(name, i));
+  return all;
 }
 
 /// Whether a body is announced. Heads that say it in two ways were refused before.
@@ -75,8 +89,9 @@ Request request_of(const httplib::Request& request, Body* body) {
   return {request.method,
           request.target,
           host_of(request),
-          header(request, "Accept-Encoding"),
-          header(request, "If-None-Match"),
+          list(request, "Accept-Encoding"),
+          list(request, "If-Match"),
+          list(request, "If-None-Match"),
           header(request, "If-Range"),
           header(request, "Range"),
           origin_of(request),
@@ -87,6 +102,11 @@ Request request_of(const httplib::Request& request, Body* body) {
           body,
           request.remote_addr,
           is_passed_on(request)};
+}
+
+std::string http_date(std::chrono::system_clock::time_point time) {
+  return fmt::format("{:%a, %d %b %Y %H:%M:%S} GMT",
+                     fmt::gmtime(std::chrono::system_clock::to_time_t(time)));
 }
 
 void put(const Reply& reply, httplib::Response& response) {

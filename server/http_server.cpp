@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <exception>
 #include <system_error>
@@ -185,6 +186,7 @@ class HttpServer::Library final : public httplib::Server {
       exchange.ends_connection = response.status == 400;
       if (exchange.ends_connection && !response.has_header("Connection"))
         response.set_header("Connection", "close");
+      response.set_header("Date", http_date(std::chrono::system_clock::now()));
       if (response.status == 304 || response.status == 204)
         response.headers.erase("Content-Length");
     });
@@ -256,18 +258,14 @@ class HttpServer::Library final : public httplib::Server {
     switch (connection.next_request()) {
       case Connection::Next::request:
         break;
-      case Connection::Next::malformed:
-        return refuse(connection, 400, "Bad Request", "");
-      case Connection::Next::too_large:
-        return refuse(
-            connection, 431, "Request Header Fields Too Large",
-            fmt::format("The head of the request has more than {} bytes.", kMostHeadBytes));
+      case Connection::Next::refused:
+        return refuse(connection);
       case Connection::Next::end:
         return false;
     }
     const RequestHead& head = connection.head();
-    const bool closes =
-        connection.requests() == kMostRequests || head.has_body || queue_.has_waiting_accepts();
+    const bool closes = head.is_last || connection.requests() == kMostRequests || head.has_body ||
+                        queue_.has_waiting_accepts();
     bool client_closes = false;
     const auto add_range = [&](httplib::Request& request) {
       if (head.range)
@@ -279,18 +277,18 @@ class HttpServer::Library final : public httplib::Server {
     return is_sent && !closes && !client_closes && !exchange.ends_connection && !is_stopping_;
   }
 
-  /// Refuses bytes that are no request, for which "-" stands in the log. `why`: for people; may be
-  /// empty.
-  bool refuse(Connection& connection, int status, const char* reason, const std::string& why) {
-    const std::string body = why.empty() ? "" : why + '\n';
+  /// Refuses bytes that are no request, for which "-" stands in the log.
+  bool refuse(Connection& connection) {
+    const RefusedHead& refusal = connection.refusal();
+    const std::string body = refusal.why + '\n';
     const std::string reply = fmt::format(
-        "HTTP/1.1 {} {}\r\nConnection: close\r\nCache-Control: no-store\r\n{}"
-        "Content-Length: {}\r\n\r\n{}",
-        status, reason, body.empty() ? "" : "Content-Type: text/plain; charset=utf-8\r\n",
-        body.size(), body);
+        "HTTP/1.1 {} {}\r\nDate: {}\r\nConnection: close\r\nCache-Control: no-store\r\n"
+        "Content-Type: text/plain; charset=utf-8\r\nContent-Length: {}\r\n\r\n{}",
+        refusal.status, refusal.reason, http_date(std::chrono::system_clock::now()), body.size(),
+        body);
     connection.write(reply.data(), reply.size());
     if (log_)
-      log_({connection.address(), "-", "-", status, body.size()});
+      log_({connection.address(), "-", "-", refusal.status, body.size()});
     return false;
   }
 

@@ -72,7 +72,8 @@ constexpr std::string_view kScriptPolicy =
 // All else is data: opened by itself it may do nothing.
 constexpr std::string_view kFilePolicy = "default-src 'none'";
 constexpr const char* kMethods = "GET, HEAD, OPTIONS";
-constexpr const char* kMethodsWithUploads = "GET, HEAD, OPTIONS, POST, PUT";
+constexpr const char* kMethodsOfViews = "GET, HEAD, OPTIONS, PUT";
+constexpr const char* kMethodsOfInbox = "GET, HEAD, OPTIONS, POST, PUT";
 
 // A hierarchy is never changed, but `build --force` puts another one in its place, under the same
 // names: a client that mixed tiles of the two would show cracks. So it asks each time, and is told
@@ -146,15 +147,15 @@ Reply Site::route(const Request& request) {
                       "--host to be reached by other names.");
   }
   if (request.method == "OPTIONS") {
-    return {.status = 204, .headers = {{"Allow", methods()}}};
+    return {.status = 204, .headers = {{"Allow", methods(request.target)}}};
   }
   if (is_upload(request))
     return options_.uploads->take(request, request.target.substr(kInbox.size() - 1));
-  if (options_.views != nullptr && ViewRequests::is_for_view(request))
+  if (options_.views != nullptr && request.method == "PUT" && ViewRequests::is_view(request.target))
     return take_view(request);
   if (request.method != "GET" && request.method != "HEAD") {
     Reply reply = text_reply(405, "Files are read here, nothing else.");
-    reply.headers.emplace_back("Allow", methods());
+    reply.headers.emplace_back("Allow", methods(request.target));
     return reply;
   }
   if (request.has_body)
@@ -171,8 +172,11 @@ Reply Site::route(const Request& request) {
   return viewer_file(request, *path);
 }
 
-const char* Site::methods() const {
-  return options_.uploads == nullptr ? kMethods : kMethodsWithUploads;
+/// Returns the methods that a target takes; "*" stands for all targets.
+const char* Site::methods(std::string_view target) const {
+  if (options_.uploads != nullptr && (target == "*" || target.starts_with(kInbox)))
+    return kMethodsOfInbox;
+  return options_.views != nullptr && ViewRequests::is_view(target) ? kMethodsOfViews : kMethods;
 }
 
 bool Site::is_upload(const Request& request) const {
@@ -203,10 +207,10 @@ Reply Site::models_json(const Request& request) {
   const auto catalogue = gallery_.catalogue(wish ? wish->state : std::string());
   const std::string text = gallery_json(*catalogue, wish, around);
   const std::string tag = text_tag(text);
-  const bool is_known = request.if_none_match && names_tag(*request.if_none_match, tag);
+  const std::optional<int> status = status_by_conditions(request, tag);
   Reply reply{.headers = {{"ETag", tag}, {"Cache-Control", kRevalidate}}, .text = text};
-  if (is_known) {
-    reply.status = 304;
+  if (status) {
+    reply.status = *status;
     reply.text.clear();
   } else {
     reply.headers.emplace_back("Content-Type", content_type(".json"));

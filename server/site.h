@@ -57,7 +57,7 @@ class Site {
 
  private:
   Reply route(const Request& request);
-  const char* methods() const;
+  const char* methods(std::string_view target) const;
   bool is_upload(const Request& request) const;
   bool is_vital(const Request& request) const;
   Reply take_view(const Request& request);

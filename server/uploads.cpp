@@ -204,7 +204,7 @@ std::optional<UploadOffer> Uploads::offer() const {
   return UploadOffer{options_.limit_bytes, !options_.token.empty()};
 }
 
-std::optional<Reply> Uploads::refuse_sender(const Request& request) const {
+std::optional<Reply> Uploads::refuse_change(const Request& request) const {
   if (!is_of_own_page(request))
     return text_reply(403, "Pages of others may not send meshes here.");
   if (!offer()) {
@@ -212,9 +212,11 @@ std::optional<Reply> Uploads::refuse_sender(const Request& request) const {
                       "Meshes are taken from this machine only: start the server with "
                       "--upload-token-file to send them from others.");
   }
-  if (options_.token.empty() || knows_secret(request, options_.token))
-    return std::nullopt;
-  return secret_needed();
+  if (!options_.token.empty() && !knows_secret(request, options_.token))
+    return secret_needed();
+  if (request.if_match)
+    return text_reply(412, "Nothing here has a tag (If-Match) that a change could ask for.");
+  return std::nullopt;
 }
 
 std::optional<Reply> Uploads::refuse_size(const Request& request) const {
@@ -258,7 +260,7 @@ Reply Uploads::take(const Request& request, std::string_view place) {
 }
 
 Reply Uploads::reply_to(const Request& request, std::string_view place) {
-  if (auto refused = refuse_sender(request))
+  if (auto refused = refuse_change(request))
     return std::move(*refused);
   const std::optional<std::string> name = decode_path(place);
   if (!name || !is_plain_name(*name))

@@ -86,13 +86,13 @@ ViewRequests::ViewRequests(std::filesystem::path folder, const Uploads& uploads,
       files_(files),
       tell_(std::move(tell)) {}
 
-bool ViewRequests::is_for_view(const Request& request) {
-  const std::string_view target = without_query(request.target);
-  return request.method == "PUT" && target.starts_with(kModelsBegin) && target.ends_with(kViewEnd);
+bool ViewRequests::is_view(std::string_view target) {
+  const std::string_view path = without_query(target);
+  return path.starts_with(kModelsBegin) && path.ends_with(kViewEnd);
 }
 
 Reply ViewRequests::take(const Request& request) {
-  if (auto refused = uploads_.refuse_sender(request))
+  if (auto refused = uploads_.refuse_change(request))
     return std::move(*refused);
   std::string_view target = without_query(request.target);
   target.remove_suffix(kViewEnd.size());

@@ -23,8 +23,8 @@ class ViewRequests {
   ViewRequests(std::filesystem::path folder, const Uploads& uploads, Hierarchies& hierarchies,
                storage::FileSystem& files, Hierarchies::Tell tell);
 
-  /// Whether a request is for a view, as far as its address says: "/models/scan.hier/view".
-  static bool is_for_view(const Request& request);
+  /// Whether a target is that of a view, as far as it says: "/models/scan.hier/view".
+  static bool is_view(std::string_view target);
 
   /// Replies 200 with a JSON object, the `build`'s new name and the `view` as it is kept; or why
   /// not, in one line. Throws nothing but storage::Busy.

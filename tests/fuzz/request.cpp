@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
 namespace meshhier::tests::fuzz {
 namespace {
@@ -52,7 +53,9 @@ void check_range(std::string_view header) {
 void check_headers(std::string_view value) {
   check_range(value);
   if (server::is_loopback_name(value))
-    require(value.find_first_of("/@ ?#") == std::string_view::npos, "a loopback's name is a name");
+    require(server::is_host(value), "a loopback's name is a host");
+  if (server::is_host(value))
+    require(value.find_first_of("/@ ?#") == std::string_view::npos, "a host is a name");
   if (server::allows_gzip(value))
     require(value.find_first_of("gGxX*") != std::string_view::npos, "gzip is asked for by name");
   if (server::names_tag(value, "\"a-b\""))
@@ -91,10 +94,14 @@ void request(Bytes input) {
   const std::size_t blank = std::min(first.find(' '), first.size());
   const std::string_view behind = first.substr(std::min(blank + 1, first.size()));
   check_path(behind.substr(0, behind.find(' ')));
-  const std::optional<server::RequestHead> head = server::parse_head(raw);
-  if (!head)
+  const auto parsed = server::parse_head(raw);
+  if (const auto* refused = std::get_if<server::RefusedHead>(&parsed)) {
+    require(refused->status >= 400 && !refused->why.empty(), "who is refused is told why");
     return;
-  require(head->text.size() <= raw.size(), "nothing is added");
+  }
+  const auto* head = &std::get<server::RequestHead>(parsed);
+  constexpr std::size_t kPathAndHost = 2;  // "http://a" becomes "/" and a line "Host: a"
+  require(head->text.size() <= raw.size() + kPathAndHost, "nothing else is added");
   require(std::ranges::count(first, ' ') == 2, "a request is three words");
   check_lines(head->text);
   if (head->range)

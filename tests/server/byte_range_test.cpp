@@ -25,6 +25,7 @@ TEST(ByteRangeTest, PartsAreFound) {
   expect("bytes=99-", part(99, 1));
   expect("bytes=90-1000", part(90, 10));
   expect("bytes= 10-19 ", part(10, 10));
+  expect("Bytes=10-19", part(10, 10));
 }
 
 TEST(ByteRangeTest, TheLastBytesAreFound) {

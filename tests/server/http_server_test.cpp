@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "server/conditions.h"
+#include "server/http_messages.h"
 #include "server/site.h"
 #include "storage/io/process.h"
 #include "tests/server/path_tricks.h"
@@ -22,6 +23,7 @@
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -104,6 +106,7 @@ TEST_F(HttpServerTest, HeadIsTheHeadOfGet) {
   client.send("HEAD /models/plain.hier/tiles.bin HTTP/1.1\r\nHost: localhost\r\n\r\n");
   const RawReply head = client.receive(true);
   EXPECT_EQ(head.status, 200);
+  whole.headers["date"] = head.headers.at("date");
   EXPECT_EQ(head.headers, whole.headers);
   EXPECT_EQ(client.get("/models.json").status, 200) << "no body came behind the head";
 }
@@ -161,8 +164,9 @@ TEST_F(HttpServerTest, NoTrickLeadsAnywhere) {
 TEST_F(HttpServerTest, WhatIsNoRequestIsRefused) {
   start();
   for (const std::string& bytes :
-       {"GET\r\n\r\n"s, "GET /models.json\r\n\r\n"s, "GET /models.json HTTP/9.9\r\n\r\n"s,
-        "BREW / HTTP/1.1\r\nHost: localhost\r\n\r\n"s,
+       {"GET\r\n\r\n"s, "GET /models.json\r\n\r\n"s, "GET /models.json HTTP/1.1\r\n\r\n"s,
+        "GET /models.json HTTP/1.1\r\nHost: local host\r\n\r\n"s,
+        "\r\n\r\nGET /models.json HTTP/1.1\r\nHost: localhost\r\n\r\n"s,
         "GET  /models.json HTTP/1.1\r\nHost: localhost\r\n\r\n"s,
         "GET /models.json  HTTP/1.1\r\nHost: localhost\r\n\r\n"s,
         "GET /models.json HTTP/1.1 \r\nHost: localhost\r\n\r\n"s,
@@ -174,8 +178,61 @@ TEST_F(HttpServerTest, WhatIsNoRequestIsRefused) {
     const RawReply reply = client.receive();
     EXPECT_EQ(reply.status, 400) << bytes;
     EXPECT_EQ(reply.headers.at("connection"), "close") << bytes;
+    EXPECT_THAT(reply.body, HasSubstr(".\n")) << "it says why: " << bytes;
+    EXPECT_TRUE(reply.headers.contains("date")) << bytes;
     EXPECT_TRUE(client.is_closed()) << bytes;
   }
+}
+
+TEST_F(HttpServerTest, WhatIsOfAnotherHttpIsToldSo) {
+  start();
+  for (const auto& [line, status] : std::vector<std::pair<std::string, int>>{
+           {"BREW / HTTP/1.1", 501}, {"PROPFIND / HTTP/1.1", 501}, {"GET / HTTP/9.9", 505}}) {
+    RawClient client(port());
+    client.send(line + "\r\nHost: localhost\r\n\r\n");
+    EXPECT_EQ(client.receive().status, status) << line;
+    EXPECT_TRUE(client.is_closed()) << line;
+  }
+}
+
+TEST_F(HttpServerTest, AnEmptyLineBeforeARequestIsNone) {
+  start();
+  RawClient client(port());
+  const std::string request = "GET /models.json HTTP/1.1\r\nHost: localhost\r\n\r\n";
+  client.send("\r\n" + request + "\r\n" + request + "\r\n");
+  EXPECT_EQ(client.receive().status, 200);
+  EXPECT_EQ(client.receive().status, 200);
+  EXPECT_EQ(client.get("/models.json").status, 200);
+}
+
+TEST_F(HttpServerTest, RepliesSayWhenTheyWereMade) {
+  EXPECT_EQ(http_date({}), "Thu, 01 Jan 1970 00:00:00 GMT");
+  start();
+  RawClient client(port());
+  for (const char* target : {"/models.json", "/models/plain.hier/tiles.bin", "/none"})
+    EXPECT_THAT(client.get(target).headers.at("date"), testing::EndsWith(" GMT")) << target;
+}
+
+TEST_F(HttpServerTest, AListMayBeInSeveralHeaders) {
+  start();
+  RawClient client(port());
+  const std::string tag = client.get("/models.json").headers.at("etag");
+  EXPECT_EQ(
+      client.get("/models.json", "If-None-Match: \"a\"\r\nIf-None-Match: " + tag + "\r\n").status,
+      304);
+  EXPECT_EQ(client
+                .get("/models/sub%20dir/zipped.hier/tiles/00/000000.glb",
+                     "Accept-Encoding: br\r\nAccept-Encoding: identity\r\n")
+                .status,
+            406);
+}
+
+TEST_F(HttpServerTest, WhoClosesAmongOtherWordsIsHeard) {
+  start();
+  RawClient client(port());
+  EXPECT_EQ(client.get("/models.json", "Connection: x, Close\r\n").headers.at("connection"),
+            "close");
+  EXPECT_TRUE(client.is_closed());
 }
 
 TEST_F(HttpServerTest, NoRequestHidesInAnother) {
@@ -196,7 +253,7 @@ TEST_F(HttpServerTest, NoRequestHidesInAnother) {
 
 TEST_F(HttpServerTest, HostsOfOthersAreRefused) {
   start();
-  for (const char* lines : {"Host: evil.example\r\n", ""}) {
+  for (const char* lines : {"Host: evil.example\r\n", "Host:\r\n"}) {
     RawClient client(port());
     client.send("GET /models.json HTTP/1.1\r\n" + std::string(lines) + "\r\n");
     EXPECT_EQ(client.receive().status, 421) << lines;
@@ -222,7 +279,7 @@ TEST_F(HttpServerTest, AWholeAddressIsAskedAsItsPathUnderItsOwnHost) {
     EXPECT_EQ(status_of(address, "0"), 421) << host << ": health checks name none";
   }
   EXPECT_EQ(status_of("http://localhost@evil.example/models.json", "1\r\nHost: localhost"), 400);
-  EXPECT_EQ(status_of("ftp://localhost/models.json", "1\r\nHost: localhost"), 404);
+  EXPECT_EQ(status_of("ftp://localhost/models.json", "1\r\nHost: localhost"), 400);
 }
 
 TEST_F(HttpServerTest, TwoHostsAreRefusedWhateverTheVersion) {
@@ -245,10 +302,11 @@ TEST_F(HttpServerTest, HealthChecksOfHttp10NameNoHost) {
 
 TEST_F(HttpServerTest, AHeadWithoutEndIsRefused) {
   start();
-  for (const std::string& begin : {"GET /"s, "GET / HTTP/1.1\r\nX: "s}) {
+  for (const auto& [begin, status] :
+       std::vector<std::pair<std::string, int>>{{"GET /", 414}, {"GET / HTTP/1.1\r\nX: ", 431}}) {
     RawClient client(port());
     client.send(begin + std::string(20'000, 'a'));
-    EXPECT_EQ(client.receive().status, 431);
+    EXPECT_EQ(client.receive().status, status);
     EXPECT_TRUE(client.is_closed());
   }
   std::string many = "GET /models.json HTTP/1.1\r\nHost: localhost\r\n";

@@ -176,6 +176,7 @@ TEST_F(HttpUploadTest, RefusalsComeBeforeTheBody) {
     EXPECT_EQ(status_of(head("a.ply", 1001, expect)), 413);
     EXPECT_EQ(status_of(head("taken.ply", 5, expect)), 409);
     EXPECT_EQ(status_of(head("a.txt", 5, expect)), 400);
+    EXPECT_EQ(status_of(head("a.ply", 5, std::string(expect) + "If-Match: *\r\n")), 412);
     EXPECT_EQ(status_of(head("a.ply", 5, std::string(expect) + "Origin: http://b\r\n")), 403);
     EXPECT_EQ(status_of(head("a.ply", 5,
                              std::string(expect) +
@@ -220,8 +221,13 @@ TEST_F(HttpUploadTest, ThePageIsToldWhatItMaySend) {
   EXPECT_THAT(RawClient(port()).get("/models.json").body,
               HasSubstr(R"("upload":{"limit":1000,"token":false})"));
   RawClient client(port());
-  client.send("OPTIONS /inbox/a.ply HTTP/1.1\r\nHost: localhost\r\n\r\n");
-  EXPECT_EQ(client.receive().headers.at("allow"), "GET, HEAD, OPTIONS, POST, PUT");
+  const auto allowed = [&](const std::string& target) {
+    client.send("OPTIONS " + target + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    return client.receive().headers.at("allow");
+  };
+  EXPECT_EQ(allowed("/inbox/a.ply"), "GET, HEAD, OPTIONS, POST, PUT");
+  EXPECT_EQ(allowed("*"), "GET, HEAD, OPTIONS, POST, PUT");
+  EXPECT_EQ(allowed("/models.json"), "GET, HEAD, OPTIONS");
 }
 
 TEST_F(HttpUploadTest, AConnectionThatEndsEarlyLeavesNothing) {

@@ -678,6 +678,22 @@ TEST_F(SiteTest, OtherMethodsAreRefused) {
   }
 }
 
+TEST_F(SiteTest, WhatIsAskedForByATagThatWentIsRefused) {
+  for (const char* target : {"/models.json", "/models/plain.hier/tiles.bin", "/"}) {
+    const std::string tag(get(target).header("ETag"));
+    Request again = request(target);
+    for (const std::string& tags : {tag, "\"a\", " + tag, std::string("*")}) {
+      again.if_match = tags;
+      EXPECT_EQ(site_->answer(again).status, 200) << target << tags;
+    }
+    for (const std::string& tags : {std::string("\"a\""), "W/" + tag, std::string()}) {
+      again.if_match = tags;
+      again.if_none_match = tag;
+      EXPECT_EQ(site_->answer(again).status, 412) << target << tags;
+    }
+  }
+}
+
 TEST_F(SiteTest, NamesOfOthersAreNotAnsweredOnTheLoopback) {
   Request other = request("/models.json");
   for (const char* host : {"evil.example", "evil.example:8080", ""}) {
