@@ -52,6 +52,7 @@ struct Request {
   std::optional<std::string> origin{};  ///< "" if there are several
   std::optional<std::string> authorization{};
   std::optional<std::string> content_type{};
+  std::optional<std::string> content_encoding{};
   bool is_part = false;       ///< its body is a part of something (Content-Range)
   bool has_body = false;      ///< more than 0 bytes are announced behind the head
   Body* body = nullptr;       ///< null if no Content-Length tells how long it is

@@ -97,6 +97,7 @@ Request request_of(const httplib::Request& request, Body* body) {
           origin_of(request),
           header(request, "Authorization"),
           header(request, "Content-Type"),
+          list(request, "Content-Encoding"),
           request.has_header("Content-Range"),
           announces_body(request),
           body,

@@ -168,6 +168,22 @@ Reply publish(StagedUpload& staged, const std::string& name) {
   return text_reply(201, fmt::format("{} is in the inbox.", name));
 }
 
+/// Whether a body is packed for its way (RFC 9110, section 8.4).
+bool is_packed(const Request& request) {
+  return request.content_encoding && small_letters(*request.content_encoding) != "identity";
+}
+
+/// Returns 415, and what is taken instead (RFC 9110, section 15.5.16).
+Reply packed_body() {
+  Reply reply =
+      text_reply(415,
+                 "A body that is packed for its way (Content-Encoding) is not taken: send "
+                 "it without that header; a packed mesh under its own name, as "
+                 "scan.ply.gz.");
+  reply.headers.emplace_back("Accept-Encoding", "identity");
+  return reply;
+}
+
 /// Whether it comes from a page of this server, or from no page: browsers send the origin of the
 /// page with each request that is not just for reading; curl sends none.
 bool is_of_own_page(const Request& request) {
@@ -216,6 +232,8 @@ std::optional<Reply> Uploads::refuse_change(const Request& request) const {
     return secret_needed();
   if (request.if_match)
     return text_reply(412, "Nothing here has a tag (If-Match) that a change could ask for.");
+  if (is_packed(request))
+    return packed_body();
   return std::nullopt;
 }
 

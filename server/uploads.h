@@ -53,8 +53,8 @@ class Uploads {
 
   /// Returns the offer that pages are told; nothing if nobody may send.
   std::optional<UploadOffer> offer() const;
-  /// Returns why a request may not change anything here, by whose it is or its conditions;
-  /// nothing if it may.
+  /// Returns why a request may not change anything here, by whose it is, its conditions or its
+  /// encoding; nothing if it may.
   std::optional<Reply> refuse_change(const Request& request) const;
   /// Takes an upload. `place`: the target below /inbox, "/scan.ply". Returns 201, or why not, in
   /// one line. Reads the body in this thread, as long as the client sends it. Throws nothing but

@@ -177,6 +177,7 @@ TEST_F(HttpUploadTest, RefusalsComeBeforeTheBody) {
     EXPECT_EQ(status_of(head("taken.ply", 5, expect)), 409);
     EXPECT_EQ(status_of(head("a.txt", 5, expect)), 400);
     EXPECT_EQ(status_of(head("a.ply", 5, std::string(expect) + "If-Match: *\r\n")), 412);
+    EXPECT_EQ(status_of(head("a.ply", 5, std::string(expect) + "Content-Encoding: gzip\r\n")), 415);
     EXPECT_EQ(status_of(head("a.ply", 5, std::string(expect) + "Origin: http://b\r\n")), 403);
     EXPECT_EQ(status_of(head("a.ply", 5,
                              std::string(expect) +
@@ -194,6 +195,24 @@ TEST_F(HttpUploadTest, RefusalsComeBeforeTheBody) {
               411);
   }
   EXPECT_THAT(entries(), testing::ElementsAre("taken.ply"));
+}
+
+TEST_F(HttpUploadTest, WhoPacksABodyIsToldHowToSendIt) {
+  start();
+  const auto reply_to = [&](const std::string& coding) {
+    RawClient client(port());
+    client.send(head("a.ply", 3, "Content-Encoding: " + coding + "\r\n") + "abc");
+    return client.receive();
+  };
+  for (const char* coding :
+       {"gzip", "GZIP", "br, identity", "identity\r\nContent-Encoding: gzip"}) {
+    const RawReply reply = reply_to(coding);
+    EXPECT_EQ(reply.status, 415) << coding;
+    EXPECT_EQ(reply.headers.at("accept-encoding"), "identity") << coding;
+    EXPECT_THAT(reply.body, HasSubstr("scan.ply.gz")) << coding;
+  }
+  EXPECT_THAT(entries(), IsEmpty());
+  EXPECT_EQ(reply_to("Identity").status, 201);
 }
 
 TEST_F(HttpUploadTest, WhoSendsOnAfterARefusalCanReadIt) {
