@@ -73,4 +73,4 @@ def make(command: str, hierarchy: Place, output: Optional[Path], given: Mapping[
 
 def several(paths: Union[Path, Sequence[Path], None]) -> list[Path]:
     """What is one path, several, or none, as a list."""
-    return [] if paths is None else [paths] if isinstance(paths, (str, os.PathLike)) else list(paths)
+    return [] if paths is None else [paths] if isinstance(paths, (str, bytes, os.PathLike)) else list(paths)

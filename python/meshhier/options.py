@@ -195,9 +195,14 @@ def _setting(value: Any, _: Files) -> list[str]:
         raise ValueError(refusal)
     key, wanted = value[0], os.fspath(value[1]) if isinstance(value[1], os.PathLike) else value[1]
     try:
-        return [f"{key}={wanted if isinstance(wanted, str) else json.dumps(wanted, default=_plain)}"]
+        word = wanted if isinstance(wanted, str) else json.dumps(wanted, default=_plain, ensure_ascii=False)
+        if word is not wanted:
+            word.encode()
+    except UnicodeEncodeError:
+        raise ValueError("lists of texts in UTF-8, as JSON has them; a mesh with another name goes by itself, or as `mesh`") from None
     except (TypeError, ValueError):
         raise ValueError(refusal) from None
+    return [f"{key}={word}"]
 
 
 @dataclass(frozen=True)
@@ -297,7 +302,7 @@ def option_words(command: str, given: Mapping[str, Any], files: Files) -> list[s
 
 
 def _values(value: Any, option: Option) -> Sequence[Any]:
-    is_one = not option.is_list or isinstance(value, (str, os.PathLike)) or not hasattr(value, "__iter__")
+    is_one = not option.is_list or isinstance(value, (str, bytes, os.PathLike)) or not hasattr(value, "__iter__")
     return [value] if is_one else list(value.items() if isinstance(value, Mapping) else value)
 
 

@@ -470,6 +470,11 @@ def test_odd_arguments(hier: str, tmp_path: Path) -> None:
     for place in (None, 3, b"a.hier"):
         with pytest.raises(meshhier.UsageError, match="expected a path, found"):
             meshhier.open(place)  # type: ignore[arg-type]
+    for mesh in (b"a.ply", ["a.ply", b"a.ply"]):
+        with pytest.raises(meshhier.UsageError, match=r"found b'a.ply': os\.fsdecode\(\) makes one"):
+            meshhier.build(mesh, tmp_path / "a.hier")  # type: ignore[call-overload]
+    with pytest.raises(meshhier.UsageError, match="in UTF-8, as JSON has them"):
+        meshhier.build(None, tmp_path / "a.hier", settings={"input": [os.fsdecode(b"a\xff.ply")]})
     for name in ("a\0.hier", "\ud800.hier", "https://user:s3cret@h/a\0.3tz"):
         with pytest.raises(meshhier.UsageError, match="expected a path, found") as refusal:
             meshhier.compare(name, hier)
