@@ -7,6 +7,7 @@
 #include "server/build_process.h"
 #include "storage/io/json_text.h"
 #include "storage/io/own_program.h"
+#include "storage/io/told_json.h"
 
 #include <algorithm>
 #include <cmath>
@@ -178,7 +179,7 @@ class Batch {
     nlohmann::ordered_json named{{"model", item.name()}};
     named.update(event);
     const std::lock_guard lock(mutex_);
-    environment_.messages << storage::json_text(named) + '\n' << std::flush;
+    environment_.messages << storage::told_json_text(named) + '\n' << std::flush;
   }
 
   /// Tells people; programs have the builds' own lines.

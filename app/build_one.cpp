@@ -10,7 +10,7 @@
 #include "pipeline/build.h"
 #include "pipeline/plan/build_plan.h"
 #include "pipeline/update.h"
-#include "storage/io/json_text.h"
+#include "storage/io/told_json.h"
 
 #include <algorithm>
 #include <ostream>
@@ -46,11 +46,12 @@ void tell_warnings(std::string_view account, execution::Progress& progress) {
 }
 
 /// Tells programs by an event, people by a line.
-void tell_update(const char* event, const std::string& message, execution::ProgressMode mode,
-                 std::ostream& out, const Environment& environment) {
+void tell_update(const char* event, const std::string& message, const config::Config& config,
+                 execution::ProgressMode mode, std::ostream& out, const Environment& environment) {
   if (mode == execution::ProgressMode::json) {
-    const nlohmann::ordered_json told{{"event", event}, {"message", message}};
-    environment.messages << storage::json_text(told) << std::endl;
+    const nlohmann::ordered_json told{
+        {"event", event}, {"message", message}, {"output", config.output.string()}};
+    environment.messages << storage::told_json_text(told) << std::endl;
   } else {
     out << message << std::endl;
   }
@@ -95,10 +96,10 @@ bool is_up_to_date(const BuildArguments& arguments, const config::Config& config
     return false;
   const std::string reason = reason_to_build(arguments, config, progress, environment);
   if (reason.empty()) {
-    tell_update("up_to_date", up_to_date_text(config), mode, environment.out, environment);
+    tell_update("up_to_date", up_to_date_text(config), config, mode, environment.out, environment);
   } else if (mode == execution::ProgressMode::json || environment.terminal.is_terminal) {
-    tell_update("outdated", fmt::format("{} is built: {}", output_text(config), reason), mode,
-                environment.messages, environment);
+    tell_update("outdated", fmt::format("{} is built: {}", output_text(config), reason), config,
+                mode, environment.messages, environment);
   }
   return reason.empty();
 }

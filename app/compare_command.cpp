@@ -135,7 +135,7 @@ between two scans, how well a model fits its scan. Nothing is thinned out, and n
 memory. Percentiles and means are by area. Nothing aligns the two but --transform, which is made in
 a program for that. Exit code 1 if a vertex is farther than the tolerance. Of a mesh a hierarchy is
 built in TMPDIR, for as long as it takes. Of two addresses --header is for the host of the first,
-unless a line begins with another one's.
+unless a line begins with another one's: "https://b.org X-Key: 123", "localhost:8080 X-Key: 123".
 
 The PLY has the property "distance", by which CloudCompare, MeshLab or ParaView colour it. A NAME.hier
 or NAME.3tz is a hierarchy with the attribute "distance", for the page and preview --attribute.

@@ -4,7 +4,6 @@
 #include "base/error.h"
 #include "inspection/inspect.h"
 #include "inspection/list_objects.h"
-#include "storage/io/json_text.h"
 
 #include <memory>
 #include <optional>
@@ -39,10 +38,8 @@ int run_inspect(const InspectArguments& arguments, Environment& environment) {
         {arguments.objects.value_or(""), arguments.where, arguments.json, arguments.words},
         environment.cancel, [&](std::string_view line) { environment.out << line << '\n'; });
   } else if (arguments.json) {
-    environment.out << storage::json_text(
-                           inspection::inspect_json(place.files(), place.path(), arguments.options),
-                           {.indent = 2})
-                    << '\n';
+    environment.out << pretty_json(
+        inspection::inspect_json(place.files(), place.path(), arguments.options));
   } else {
     environment.out << inspection::inspect_text(place.files(), place.path(), arguments.options);
   }

@@ -8,11 +8,12 @@
 #include "execution/memory_budget.h"
 #include "execution/size_text.h"
 #include "execution/threads.h"
-#include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
+#include "storage/io/told_json.h"
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -75,6 +76,10 @@ Exit codes:
   130  interrupted by Ctrl-C or SIGTERM; the same build goes on where it was (serve: 0)
 )";
 
+/// The least --memory-budget. The program with its libraries takes 20 to 30 MiB before it has read
+/// anything.
+constexpr std::uint64_t kLeastBudget = std::uint64_t{32} << 20;
+
 constexpr const char* kNoMemory =
     "the system has no more memory; lower memory_budget or close other programs";
 
@@ -126,7 +131,7 @@ int report_failure(ErrorCode code, const std::string& message, execution::Progre
   if (mode == execution::ProgressMode::json) {
     const nlohmann::ordered_json event{
         {"event", "error"}, {"code", exit_code(code)}, {"message", message}};
-    std::cerr << storage::json_text(event) << '\n';
+    std::cerr << storage::told_json_text(event) << '\n';
   } else {
     std::cerr << "meshhier: " << message << '\n';
   }
@@ -181,13 +186,20 @@ void require_inputs_stay(const CLI::App& command, storage::FileSystem& files) {
   }
 }
 
-/// Warns of a --memory-budget that is beyond what the process may use.
-void warn_of_budget(const CLI::App& command, execution::ProgressMode mode,
-                    Environment& environment) {
+/// Refuses a --memory-budget that is less than the program takes by itself; warns of one that is
+/// beyond what the process may use.
+void check_budget(const CLI::App& command, execution::ProgressMode mode, Environment& environment) {
   const CLI::Option* const option = command.get_option_no_throw("--memory-budget");
   if (option == nullptr || option->count() == 0)
     return;
   const auto bytes = execution::parse_size(option->results().back());
+  if (bytes && *bytes < kLeastBudget) {
+    throw Error(
+        ErrorCode::budget,
+        fmt::format("--memory-budget {} is too small: the program itself takes nearly {}; "
+                    "give that or more",
+                    execution::exact_size_text(*bytes), execution::exact_size_text(kLeastBudget)));
+  }
   const std::string warning =
       bytes ? execution::budget_warning("--memory-budget", *bytes) : std::string();
   if (!warning.empty())
@@ -272,7 +284,7 @@ std::function<int(Environment&)> with_checks(const CLI::App& parser, const Invoc
   return [&, chosen = invocation.run](Environment& environment) {
     for (const CLI::App* command : parser.get_subcommands()) {
       require_inputs_stay(*command, environment.files);
-      warn_of_budget(*command, invocation.progress, environment);
+      check_budget(*command, invocation.progress, environment);
     }
     return chosen(environment);
   };

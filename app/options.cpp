@@ -5,8 +5,8 @@
 #include "base/number_text.h"
 #include "execution/memory_budget.h"
 #include "execution/size_text.h"
-#include "storage/io/json_text.h"
 #include "storage/io/output_file.h"
+#include "storage/io/told_json.h"
 
 #include <algorithm>
 #include <array>
@@ -113,7 +113,7 @@ void require_region(const exporting::RegionRequest& region, const char* option) 
 }
 
 std::string pretty_json(const nlohmann::ordered_json& object) {
-  return storage::json_text(object, {.indent = 2}) + '\n';
+  return storage::told_json_text(object, {.indent = 2}) + '\n';
 }
 
 std::optional<NodeId> parse_node(std::string_view text) {

@@ -118,8 +118,8 @@ CLI::App* add_region_options(CLI::App& command, exporting::RegionRequest& region
 /// Throws Error(usage) if there is neither a box nor a polygon, which `option` needs.
 void require_region(const exporting::RegionRequest& region, const char* option);
 
-/// Returns a result as text, for programs. Bytes that are no UTF-8 become U+FFFD: a file name on
-/// disk may hold any bytes, JSON may not.
+/// Returns a result as text, for programs, as storage::told_json_text(): a file name on disk may
+/// hold any bytes, JSON may not.
 std::string pretty_json(const nlohmann::ordered_json& object);
 
 /// Parses "3/17" as level 3, index 17; returns nothing if the text is anything else.

@@ -2,7 +2,7 @@
 
 #include "base/plain_text.h"
 #include "execution/size_text.h"
-#include "storage/io/json_text.h"
+#include "storage/io/told_json.h"
 
 #include <algorithm>
 #include <array>
@@ -303,7 +303,9 @@ class JsonProgress final : public PacedProgress {
                 {"job_eta_seconds", rounded(stage.job_seconds_left)}});
   }
 
-  void write_line(const Json& event) { out() << storage::json_text(event) + '\n' << std::flush; }
+  void write_line(const Json& event) {
+    out() << storage::told_json_text(event) + '\n' << std::flush;
+  }
 };
 
 }  // namespace

@@ -3,9 +3,7 @@
 #include "base/error.h"
 #include "base/plain_text.h"
 #include "storage/format/archive_files.h"
-#include "storage/format/layout.h"
-#include "storage/format/manifest.h"
-#include "storage/format/sealed_json.h"
+#include "storage/format/load_manifest.h"
 #include "storage/format/view_edit.h"
 #include "storage/format/view_keys.h"
 #include "storage/format/view_link.h"
@@ -19,10 +17,7 @@ namespace meshhier::inspection {
 
 ModelView kept_view(storage::FileSystem& files, const std::filesystem::path& hierarchy) {
   const storage::HierarchyFiles place(files, hierarchy);
-  const std::filesystem::path path = storage::manifest_path(hierarchy);
-  return storage::parse_manifest(storage::read_sealed_text(*place.files().open(path)),
-                                 path.string())
-      .view;
+  return storage::load_manifest(place.files(), hierarchy).view;
 }
 
 void keep_view(storage::FileSystem& files, const std::filesystem::path& hierarchy,

@@ -7,6 +7,7 @@
 #include "storage/format/archive_files.h"
 #include "storage/format/build_name.h"
 #include "storage/format/layout.h"
+#include "storage/format/load_manifest.h"
 #include "verify/verify_parts.h"
 
 #include <optional>
@@ -42,13 +43,6 @@ std::optional<storage::HierarchyFiles> open_place(storage::FileSystem& files,
     problems.add(error.what());
     return std::nullopt;
   }
-}
-
-void require_manifest(const storage::HierarchyFiles& place, const fs::path& hierarchy) {
-  if (place.files().exists(storage::manifest_path(hierarchy)))
-    return;
-  throw Error(ErrorCode::io, fmt::format("{}: not a hierarchy: there is no {}", hierarchy.string(),
-                                         storage::manifest_path({}).string()));
 }
 
 /// All that is not content, and contents against their CRC-32.
@@ -155,7 +149,7 @@ VerifyReport verify_hierarchy(storage::FileSystem& files, const fs::path& direct
     if (place->archive() != nullptr && !options.region.is_any())
       verify_archive(*place->archive(), problems, report.checks, cancel);
     if (problems.count() == 0)
-      require_manifest(*place, directory);
+      storage::require_manifest(place->files(), directory);
     if (const auto reader = open_hierarchy(place->files(), directory, problems)) {
       storage::MemoryPool pool(options.memory_budget / 8);
       storage::ScratchFile scratch(files, scratch_path(files, directory, options), pool);

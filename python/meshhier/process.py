@@ -12,7 +12,8 @@ import sys
 import threading
 import warnings
 from dataclasses import dataclass, field
-from typing import IO, Any, Callable, Mapping, Optional, Sequence
+from typing import IO, Any, Callable, Mapping, Optional, Sequence, Union
+from urllib.parse import unquote_to_bytes
 
 from .errors import BuildWarning, ProgramNotFoundError, program_error
 from .options import spoken
@@ -77,7 +78,22 @@ class Result:
         return self.output.decode("utf-8", "replace")
 
     def json(self) -> Any:
-        return json.loads(self.output)
+        return read_json(self.output)
+
+
+def read_json(text: Union[str, bytes]) -> Any:
+    """JSON of the program: names of files that are not UTF-8 are as os.fsdecode() has them."""
+    return json.loads(text, object_hook=_with_names)
+
+
+def _with_names(values: dict[str, Any]) -> dict[str, Any]:
+    """Puts what is in a key KEY_escaped in the place of KEY, but for messages, which are to be printed."""
+    end = "_escaped"
+    for key in [key for key in values if key.endswith(end)]:
+        name = unquote_to_bytes(values.pop(key))
+        if key != "message" + end:
+            values[key[: -len(end)]] = os.fsdecode(name)
+    return values
 
 
 def find_program() -> str:
@@ -253,10 +269,10 @@ def _why(result: Result) -> str:
 def _event(line: str) -> Optional[dict[str, Any]]:
     """A line of --progress json; None if it is none."""
     try:
-        told = json.loads(line) if line.startswith("{") else None
+        event = read_json(line) if line.startswith("{") else None
     except ValueError:
         return None
-    return told if isinstance(told, dict) and "event" in told else None
+    return event if isinstance(event, dict) and "event" in event else None
 
 
 def _progress(event: Mapping[str, Any]) -> Progress:

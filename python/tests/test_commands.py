@@ -464,6 +464,30 @@ def test_warnings_point_at_the_caller_and_can_be_errors(torus: str, hier: str, t
     assert os.listdir(tmp_path) == []
 
 
+def test_names_that_are_no_utf8(tiny: str, tmp_path: Path) -> None:
+    """They are as os.fsdecode() has them, in what is given and in what comes back."""
+    mesh = os.path.join(tmp_path, os.fsdecode(b"caf\xe9.ply"))
+    os.link(tiny, mesh)
+    settings = {"preview": False}
+    output = os.fsdecode(os.fsencode(mesh)[:-3] + b"hier")
+    assert meshhier.build(mesh, settings=settings, dry_run=True).output == output
+    for given in ({}, {"update": True}, {"force": True, "settings": {"input": mesh, **settings}}):
+        with meshhier.build(None if "force" in given else mesh, **{"settings": settings, **given}) as hierarchy:  # type: ignore[call-overload]
+            assert hierarchy.path == output and os.path.isdir(output)
+    assert meshhier.inspect(output) and meshhier.verify(output, input=mesh).checks
+    assert meshhier.unpack(meshhier.pack(output, output + ".3tz"), output + ".hier").is_dir()
+    stopped = tmp_path / os.fsdecode(b".caf\xe9.hier.meshhier-work")
+    stopped.mkdir()
+    (stopped / "journal").touch()
+    assert {one.path for one in meshhier.clean(tmp_path)} <= {str(stopped)}
+    with pytest.raises(meshhier.UsageError, match="in UTF-8, as JSON has them"):
+        meshhier.build(None, tmp_path / "a.hier", settings={"input": [mesh, mesh]})
+    with pytest.raises(meshhier.UsageError, match=r"os\.fsdecode\(\) makes one"):
+        meshhier.build(os.fsencode(mesh))  # type: ignore[call-overload]
+    with pytest.raises(meshhier.UsageError, match=r"os\.fsdecode\(\) makes one"):
+        meshhier.build([mesh, os.fsencode(mesh)], tmp_path / "a.hier")  # type: ignore[list-item]
+
+
 def test_odd_arguments(hier: str, tmp_path: Path) -> None:
     with pytest.raises(meshhier.UsageError, match="expected a path"):
         meshhier.inspect(3)  # type: ignore[arg-type]

@@ -1,7 +1,6 @@
 #include "storage/format/build_name.h"
 
-#include "storage/format/layout.h"
-#include "storage/format/sealed_json.h"
+#include "storage/format/load_manifest.h"
 
 #include <algorithm>
 #include <optional>
@@ -20,8 +19,7 @@ constexpr std::size_t kNameDigits = 16;
 /// Returns the manifest that is there now; nothing if none can be read.
 std::optional<Manifest> manifest_now(FileSystem& files, const std::filesystem::path& hierarchy) {
   try {
-    const auto path = manifest_path(hierarchy);
-    return parse_manifest(read_sealed_text(*files.open(path)), path.string());
+    return load_manifest(files, hierarchy);
   } catch (const Error& error) {
     if (error.code() != ErrorCode::corrupt && error.code() != ErrorCode::io)
       throw;

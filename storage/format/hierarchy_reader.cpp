@@ -6,8 +6,8 @@
 #include "storage/format/build_name.h"
 #include "storage/format/index.h"
 #include "storage/format/layout.h"
+#include "storage/format/load_manifest.h"
 #include "storage/format/outline_glb.h"
-#include "storage/format/sealed_json.h"
 #include "storage/io/sealed_file.h"
 
 #include <algorithm>
@@ -21,11 +21,6 @@ namespace {
 
 /// The largest length that a GLB can state: a larger file is not worth the memory.
 constexpr std::uint64_t kMaxGlbBytes = UINT32_MAX;
-
-Manifest load_manifest(FileSystem& files, const std::filesystem::path& directory) {
-  const auto path = manifest_path(directory);
-  return parse_manifest(read_sealed_text(*files.open(path)), path.string());
-}
 
 /// Checks that the records have splits and pictures only where the manifest says so.
 void check_shading(std::span<const TileRecord> records, const Manifest& manifest,

@@ -5,7 +5,7 @@
 #include "hierarchy/scalar_value.h"
 #include "storage/format/build_name.h"
 #include "storage/format/layout.h"
-#include "storage/format/manifest.h"
+#include "storage/format/load_manifest.h"
 #include "storage/format/sealed_json.h"
 #include "storage/format/view_keys.h"
 #include "storage/io/json_text.h"
@@ -78,6 +78,7 @@ std::string replace_view(FileSystem& files, const std::filesystem::path& hierarc
                             "(\"view\": {{...}}), or unpack it and change the directory",
                             hierarchy.string()));
   }
+  require_manifest(files, hierarchy);
   const std::filesystem::path path = manifest_path(hierarchy);
   OutputFile output(files, {path, true});
   const std::string text = read_sealed_text(*files.open(path));

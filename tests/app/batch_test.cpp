@@ -528,6 +528,23 @@ TEST_F(Each, ProgramsAreToldOfEachModel) {
                                                 (models() / "broken.hier").string()}));
 }
 
+TEST_F(Each, ProgramsAreToldTheBytesOfNamesThatAreNoUtf8) {
+  write_mesh("a\xff.ply");
+  fs::current_path(work());
+  const auto told = [&](const Arguments& more, const char* key) {
+    std::istringstream lines(run(each({"a\xff.ply"}, more)).messages);
+    std::set<std::string> values;
+    for (std::string line; std::getline(lines, line);) {
+      const auto event = nlohmann::json::parse(line);
+      if (event.contains(key))
+        values.insert(event.at(key));
+    }
+    return values;
+  };
+  EXPECT_THAT(told({"--progress", "json"}, "input_escaped"), ElementsAre("a%FF.ply"));
+  EXPECT_THAT(told({"--progress", "json", "--update"}, "output_escaped"), testing::SizeIs(1));
+}
+
 /// The program at work in the background, whose output nobody reads.
 pid_t start(const Arguments& arguments) {
   posix_spawn_file_actions_t actions;

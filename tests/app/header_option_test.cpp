@@ -26,6 +26,8 @@ TEST_F(CommandLine, ALineForTheSecondHostNeverReachesTheFirstHoweverItIsWritten)
         "localhost:1 X-Key: secret", "LocalHost:1 X-Key:secret 1.2"})
     EXPECT_EQ(compare(line).code, kIo) << line;
   EXPECT_EQ(compare("@" + headers).code, kIo);
+  for (const char* form : {"\"https://b.org X-Key: 123\"", "\"localhost:8080 X-Key: 123\""})
+    EXPECT_THAT(run({"compare", "--help"}).out, HasSubstr(form));
   EXPECT_THAT(host.heads().back(), HasSubstr("X-Own: 1"));
   for (const char* address : {"http:/localhost:1", "HTTP:localhost:1", "https: //localhost:1",
                               "localhost:7912", "localhost:1:", "localhost", "b.org", "[::1]:1",

@@ -38,6 +38,56 @@ TEST_F(Limited, AFolderForTemporaryFilesThatIsNotThereIsNamed) {
   EXPECT_THAT(file.messages, HasSubstr("is no directory"));
 }
 
+TEST_F(CommandLine, ABudgetThatIsLessThanTheProgramTakesIsRefusedByAll) {
+  const std::vector<Arguments> calls{{"verify", "x"},
+                                     {"compare", "x", "y"},
+                                     {"query", "x", "--points", "y"},
+                                     {"export", "x", "--level", "0", "-o", "y"},
+                                     {"preview", "x", "-o", "y.png"},
+                                     {"draw", "x", "-o", "y.png"},
+                                     {"progressive", "x", "-o", "y"},
+                                     {"reconstruct", "x", "-o", "y.ply"}};
+  for (Arguments call : calls) {
+    call.insert(call.end(), {"--memory-budget", "1"});
+    for (const char* less : {"1", "33554431"}) {
+      call.back() = less;
+      const Outcome outcome = run(call);
+      EXPECT_EQ(outcome.code, kBudget) << call[0];
+      EXPECT_THAT(outcome.messages, HasSubstr("nearly 32MiB; give that or more")) << call[0];
+    }
+    call.back() = "32MiB";
+    EXPECT_EQ(run(call).code, kIo) << call[0] << ": there is no such hierarchy";
+  }
+}
+
+TEST_F(CommandLine, AHierarchyThatIsNotThereIsToldByAllInTheSameWords) {
+  const std::string points = (work() / "p.txt").string(), out = (work() / "out").string();
+  std::filesystem::create_directories(work() / "empty");
+  write_text(points, "0 0 0\n");
+  for (const auto& [name, what] : std::vector<std::pair<std::string, std::string>>{
+           {"none.hier", "such file or directory"}, {"empty", "hierarchy.json"}}) {
+    const std::string place = (work() / name).string();
+    const std::vector<Arguments> calls{{"inspect", place},
+                                       {"verify", place},
+                                       {"verify", place, "--error"},
+                                       {"compare", place, place},
+                                       {"query", place, "--points", points},
+                                       {"export", place, "--level", "0", "-o", out + ".ply"},
+                                       {"preview", place, "-o", out + ".png"},
+                                       {"draw", place, "--plan", "-o", out + ".png"},
+                                       {"view", place},
+                                       {"view", place, "--set", "view.up=x"},
+                                       {"progressive", place, "-o", out}};
+    for (const Arguments& call : calls) {
+      const Outcome outcome = run(call);
+      EXPECT_EQ(outcome.code, kIo) << call[0];
+      EXPECT_EQ(outcome.messages,
+                "meshhier: " + place + ": not a hierarchy: there is no " + what + '\n')
+          << call[0];
+    }
+  }
+}
+
 TEST_F(Limited, LittleMemoryIsToldAndNothingElse) {
   build();
   const std::string mesh = (work() / "a.ply").string();

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 
 std::string error_of(const std::string& text) {
   const std::string message =
-      tests::error_message(ErrorCode::input, [&] { parse_ply_header(text, "h.ply"); });
+      meshhier::tests::error_message(ErrorCode::input, [&] { parse_ply_header(text, "h.ply"); });
   EXPECT_NE(message, "") << "no error for " << text;
   return message;
 }
