@@ -51,10 +51,16 @@ fs::path lock_of(const FoundLeftover& leftover) {
   }
 }
 
-/// Whether it is a directory that its lock lies in; others may put a file or a link there.
+/// Whether it is a directory that its lock lies in; others may put a file or a link there. Throws
+/// NotThere if nothing is there any more: the next build may make it anew.
 bool is_work(storage::FileSystem& files, const FoundLeftover& leftover) {
-  return lock_of(leftover) == storage::lock_path(leftover.path) &&
-         files.is_directory(leftover.path) && !files.is_link(leftover.path);
+  if (lock_of(leftover) != storage::lock_path(leftover.path))
+    return false;
+  const bool is_link = files.is_link(leftover.path);
+  const storage::FileKind kind = files.kind(leftover.path);
+  if (kind == storage::FileKind::none && !is_link)
+    throw storage::NotThere(leftover.path.string() + " has gone");
+  return kind == storage::FileKind::directory && !is_link;
 }
 
 /// Removes a leftover, unless somebody has begun to use it.

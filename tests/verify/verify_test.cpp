@@ -237,7 +237,7 @@ TEST_F(VerifyTest, NoHierarchyIsAnError) {
     FAIL() << "expected an error";
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::io);
-    EXPECT_THAT(error.what(), HasSubstr("not a hierarchy: there is no hierarchy.json"));
+    EXPECT_THAT(error.what(), HasSubstr("not a hierarchy: there is no such file or directory"));
   }
 }
 
