@@ -240,6 +240,11 @@ int execute_guarded(const Invocation& invocation, const execution::CancelToken& 
   try {
     if (std::current_exception())
       std::rethrow_exception(std::current_exception());
+    // Where there is no memory for an exception itself, none is there to be caught.
+    constexpr std::size_t kExceptionBytes = 256;
+    void* volatile const memory = std::malloc(kExceptionBytes);
+    if (memory == nullptr)
+      end(ErrorCode::budget, kNoMemory);
     end(ErrorCode::internal,
         "a defect in meshhier, please report it: it was ended without a cause");
   } catch (const Error& error) {

@@ -95,7 +95,7 @@ std::optional<BuildReport> build_if_due(const config::Config& asked, const Build
     check_coders(plan->job);
   check_room(input, plan, config, files);
 
-  storage::WorkDirectory work(files, output, options.force);
+  storage::WorkDirectory work(files, output, options.force, [&] { environment.cancel.check(); });
   if (!options.is_due())
     return std::nullopt;
   return build_in(work, input, std::move(plan), pool, config, options, environment);

@@ -58,10 +58,11 @@ std::set<fs::path> known_directories(const Tree& tree, const std::set<fs::path>&
   return known;
 }
 
-/// Returns whether a file is neither the hierarchy's nor one that systems leave in folders.
+/// Returns whether a file is neither the hierarchy's nor one that systems leave in folders, or
+/// `meshhier view` while it changes the manifest.
 bool is_strange(const VerifyJob& job, const fs::path& path) {
-  const fs::path relative = path.lexically_relative(job.reader.directory());
-  return !storage::is_system_file(relative.generic_string());
+  const std::string name = path.lexically_relative(job.reader.directory()).generic_string();
+  return !storage::is_system_file(name) && !storage::is_manifest_at_work(name);
 }
 
 /// Looks for directories that hold none of the hierarchy's files, and for links, at `directory`

@@ -39,6 +39,10 @@ bool is_leftover(storage::FileSystem& files, Leftover kind, const fs::path& outp
          (!files.exists(output) && !files.exists(storage::replaced_path(output)));
 }
 
+bool is_only_copy(storage::FileSystem& files, const FoundLeftover& leftover) {
+  return leftover.kind == Leftover::replaced && !files.exists(leftover.output);
+}
+
 /// Returns the file that whoever is at work there has locked.
 fs::path lock_of(const FoundLeftover& leftover) {
   switch (leftover.kind) {
@@ -71,7 +75,9 @@ void remove_unused(storage::FileSystem& files, FoundLeftover& leftover) {
     lock = files.try_lock(lock_of(leftover));
     leftover.in_use = lock == nullptr;
   } else {
-    leftover.in_use = !is_leftover(files, leftover.kind, leftover.output);
+    leftover.in_use = files.is_locked(lock_of(leftover)) ||
+                      !is_leftover(files, leftover.kind, leftover.output) ||
+                      is_only_copy(files, leftover);
   }
   if (leftover.in_use)
     return;
@@ -98,7 +104,7 @@ std::vector<FoundLeftover> find_leftovers(storage::FileSystem& files,
     if (!is_leftover(files, leftover.kind, leftover.output))
       continue;
     leftover.in_use = files.is_locked(lock_of(leftover));
-    leftover.only_copy = name->kind == Leftover::replaced && !files.exists(leftover.output);
+    leftover.only_copy = is_only_copy(files, leftover);
     leftover.bytes = leftover.in_use ? 0 : storage::bytes_at(files, leftover.path);
     found.push_back(std::move(leftover));
   }

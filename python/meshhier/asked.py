@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import errno
 import math
 import numbers
 import operator
@@ -63,7 +64,9 @@ def beside(place: str) -> str:
 def require_folder(path: str) -> None:
     """Raises FileError unless there is a folder for what is to be made."""
     if not os.path.isdir(os.path.dirname(os.path.abspath(path))):
-        raise FileError(f"{path}: there is no folder for it")
+        failure = FileError(f"{path}: there is no folder for it")
+        failure.errno = errno.ENOENT
+        raise failure
 
 
 def whole(value: object, what: str) -> int:

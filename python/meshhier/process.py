@@ -89,7 +89,7 @@ def read_json(text: Union[str, bytes]) -> Any:
 def _with_names(values: dict[str, Any]) -> dict[str, Any]:
     """Puts what is in a key KEY_escaped in the place of KEY, but for messages, which are to be printed."""
     end = "_escaped"
-    for key in [key for key in values if key.endswith(end)]:
+    for key in [key for key in values if key.endswith(end) and isinstance(values[key], str)]:
         name = unquote_to_bytes(values.pop(key))
         if key != "message" + end:
             values[key[: -len(end)]] = os.fsdecode(name)

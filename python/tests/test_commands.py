@@ -471,7 +471,7 @@ def test_names_that_are_no_utf8(tiny: str, tmp_path: Path) -> None:
     settings = {"preview": False}
     output = os.fsdecode(os.fsencode(mesh)[:-3] + b"hier")
     assert meshhier.build(mesh, settings=settings, dry_run=True).output == output
-    for given in ({}, {"update": True}, {"force": True, "settings": {"input": mesh, **settings}}):
+    for given in ({}, {"update": True}, {"force": True, "settings": {"input": mesh, "output": output, **settings}}):
         with meshhier.build(None if "force" in given else mesh, **{"settings": settings, **given}) as hierarchy:  # type: ignore[call-overload]
             assert hierarchy.path == output and os.path.isdir(output)
     assert meshhier.inspect(output) and meshhier.verify(output, input=mesh).checks

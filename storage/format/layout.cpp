@@ -226,4 +226,9 @@ std::optional<LeftoverName> leftover_name(std::string_view name) {
   return std::nullopt;
 }
 
+bool is_manifest_at_work(std::string_view name) {
+  const auto known = leftover_name(name);
+  return known && known->kind == Leftover::unfinished && known->output == manifest_path({});
+}
+
 }  // namespace meshhier::storage

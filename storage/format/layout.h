@@ -120,4 +120,8 @@ struct LeftoverName {
 /// Returns the meaning of the name of a file or directory; nothing if it is none of them.
 std::optional<LeftoverName> leftover_name(std::string_view name);
 
+/// Whether it is the name of a file of `meshhier view` at work in a hierarchy, or of one that was
+/// killed there.
+bool is_manifest_at_work(std::string_view name);
+
 }  // namespace meshhier::storage

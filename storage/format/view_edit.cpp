@@ -83,15 +83,17 @@ std::string replace_view(FileSystem& files, const std::filesystem::path& hierarc
   OutputFile output(files, {path, true});
   const std::string text = read_sealed_text(*files.open(path));
   const std::string changed = with_view(text, view, path.string());
-  const Error is_another(ErrorCode::exists,
-                         fmt::format("{}: another build is there by now", hierarchy.string()));
+  const auto refuse = [&] {
+    throw Error(ErrorCode::exists,
+                fmt::format("{}: another build is there by now", hierarchy.string()));
+  };
   if (build && *build != build_name(text))
-    throw is_another;
+    refuse();
   try {
     if (changed != text)
       output.publish(std::as_bytes(std::span(changed)));
   } catch (const NotThere&) {  // it took the file that was being written along
-    throw is_another;
+    refuse();
   }
   return build_name(changed);
 }

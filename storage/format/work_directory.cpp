@@ -21,12 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether it is what `meshhier view` makes, or left, in a hierarchy.
-bool is_of_view(const std::string& name) {
-  const auto known = leftover_name(name);
-  return known && known->kind == Leftover::unfinished;
-}
-
 /// Returns a file in the directory that no hierarchy, or stream, has, and no system leaves in
 /// folders; empty if there is none.
 std::string foreign_file(FileSystem& files, const Output& output) {
@@ -34,7 +28,7 @@ std::string foreign_file(FileSystem& files, const Output& output) {
       output.content == OutputContent::progressive_stream ? is_stream_file : is_hierarchy_file;
   for (const fs::path& file : files.list(output.path)) {
     const std::string name = file.lexically_relative(output.path).generic_string();
-    if (!is_own(name) && !is_system_file(name) && !is_of_view(name))
+    if (!is_own(name) && !is_system_file(name) && !is_manifest_at_work(name))
       return name;
   }
   return "";
@@ -148,7 +142,8 @@ void remove_work(FileSystem& files, const fs::path& work, std::unique_ptr<FileLo
   files.remove_if_empty(work);
 }
 
-WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
+WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace,
+                             const std::function<void()>& check)
     : files_(files), output_(std::move(output)), path_(work_path(output_.path)), replace_(replace) {
   for (auto parent = output_.path.parent_path(); !parent.empty() && !files_.exists(parent);
        parent = parent.parent_path()) {
@@ -160,6 +155,7 @@ WorkDirectory::WorkDirectory(FileSystem& files, Output output, bool replace)
                             path_.string()));
   }
   lock_ = lock_patiently([&] {
+    check();
     check_output(files_, output_, replace_);
     return take_work(files_, path_);
   });
@@ -307,7 +303,7 @@ void WorkDirectory::replace(const fs::path& from) {
   try {
     give_name(from);
   } catch (const Error&) {
-    files_.rename(old, output_.path);
+    files_.rename_new(old, output_.path);
     throw;
   }
 }

@@ -5,6 +5,7 @@
 #include "storage/io/file.h"
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -65,9 +66,11 @@ void remove_work(FileSystem& files, const std::filesystem::path& work,
 class WorkDirectory {
  public:
   /// Takes the directory as an earlier build left it, or makes it; waits up to 3 s for a process
-  /// that is just ending. Throws as check_output(); Error(locked) if another build is at work here;
-  /// Error(io) if its parent cannot be written, or the directory is a link.
-  WorkDirectory(FileSystem& files, Output output, bool replace);
+  /// that is just ending, and calls `check` meanwhile, which may throw. Throws as check_output();
+  /// Error(locked) if another build is at work here; Error(io) if its parent cannot be written, or
+  /// the directory is a link.
+  WorkDirectory(
+      FileSystem& files, Output output, bool replace, const std::function<void()>& check = [] {});
   /// Takes the directory `shared`, on the output's file system, in which several processes have
   /// built: it stays when it is published, but for the hierarchy. Throws Error(locked) if another
   /// process has it.

@@ -185,7 +185,8 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
   }
 
   std::unique_ptr<FileLock> try_lock(const std::filesystem::path& path) override {
-    for (;;) {
+    constexpr int kTries = 100;  // others may have a shared lock for as long as they like
+    for (int i = 0; i < kTries; ++i) {
       Descriptor file(::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666));
       if (!file.is_open())
         fail_system("create", path, errno);
@@ -199,6 +200,7 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
         return std::make_unique<PosixLock>(path, std::move(file));
       }  // else the one who held it has just removed it
     }
+    return nullptr;
   }
 
   bool is_locked(const std::filesystem::path& path) override {
@@ -361,7 +363,8 @@ class PosixFileSystem : public FileSystem, public SharedFileSystem {
       if (S_ISDIR(status.st_mode))
         fail_system("open", path, EISDIR);
       throw Error(ErrorCode::io,
-                  fmt::format("cannot open {}: it is not a regular file, which can be read again",
+                  fmt::format("cannot open {}: it is not a regular file, which can be read again; "
+                              "save what it has, and name that file",
                               path.string()));
     }
     return std::make_unique<PosixFile>(path, file.release(), counters_);

@@ -473,9 +473,10 @@ TEST_F(VerifyMutationsTest, WhatSystemsLeaveInFoldersIsNoProblem) {
   config::Config config = small();
   config.input = mesh("mesh.ply");
   build(config);
-  const std::vector<const char*> names{"@3dtilesIndex1@", ".DS_Store",        "tiles/00/.DS_Store",
-                                       "Thumbs.db",       "tiles/.nfs00a1b2", "tiles/._00",
-                                       "__MACOSX/x/._y",  "tiles/@eaDir/z"};
+  const std::vector<const char*> names{
+      "@3dtilesIndex1@", ".DS_Store",        "tiles/00/.DS_Store",
+      "Thumbs.db",       "tiles/.nfs00a1b2", "tiles/._00",
+      "__MACOSX/x/._y",  "tiles/@eaDir/z",   ".hierarchy.json.meshhier-lock"};
   for (const char* name : names) {
     fs::create_directories((path() / name).parent_path());
     std::ofstream(path() / name) << "anything";

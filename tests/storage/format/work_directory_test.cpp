@@ -105,6 +105,13 @@ TEST_F(WorkDirectoryTest, PublishingGivesTheOutputItsNameAndLeavesNothingElse) {
   EXPECT_THAT(names(), ElementsAre("x.hier"));
 }
 
+TEST_F(WorkDirectoryTest, WhoWaitsForAnotherOneCanBeStopped) {
+  const WorkDirectory work(*files_, output_, false);
+  const auto stop = [] { throw Error(ErrorCode::interrupted, "stopped"); };
+  expect_error(ErrorCode::interrupted, "stopped",
+               [&] { WorkDirectory(*files_, output_, false, stop); });
+}
+
 TEST_F(WorkDirectoryTest, WhatIsPublishedStaysWhenTheObjectGoes) {
   {
     WorkDirectory work(*files_, output_, false);

@@ -1,6 +1,7 @@
 #include "storage/io/neighbours.h"
 
 #include "base/error.h"
+#include "storage/io/descriptor.h"
 #include "storage/io/file.h"
 #include "tests/support/sample_hierarchy.h"
 
@@ -9,7 +10,9 @@
 #include <memory>
 #include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 
 namespace meshhier::storage {
 namespace {
@@ -58,6 +61,13 @@ TEST_F(NeighboursTest, WhoAsksForALockMakesNoneAndTakesNone) {
   lock.reset();
   EXPECT_FALSE(files_->is_locked(path("lock")));
   EXPECT_NE(files_->try_lock(path("lock")), nullptr);
+}
+
+TEST_F(NeighboursTest, ASharedLockOfOthersIsNotWaitedFor) {
+  write_file(*files_, path("lock"), {});
+  const Descriptor other(::open(path("lock").c_str(), O_RDONLY | O_CLOEXEC));
+  ASSERT_EQ(::flock(other.number(), LOCK_SH), 0);
+  EXPECT_EQ(files_->try_lock(path("lock")), nullptr);
 }
 
 TEST_F(NeighboursTest, NoLockIsTakenThroughALink) {
